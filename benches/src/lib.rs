@@ -1,0 +1,1 @@
+//! Robots and states shared by the benches.

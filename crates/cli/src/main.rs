@@ -1,0 +1,2 @@
+//! The `gyroflex` command.
+fn main() {}

@@ -1,0 +1,22 @@
+//! What a robot is: the description in the user's frames, and the records the algorithms walk.
+
+mod body;
+mod drive;
+mod error;
+mod friction;
+mod lower;
+#[allow(clippy::module_inception)]
+mod model;
+mod spec;
+mod spring;
+mod validate;
+
+pub use body::{Body, JointKind};
+pub use drive::{Drive, Elastic, Rotor, TransmissionError};
+pub use error::{Defect, ModelError};
+pub use friction::Friction;
+pub use model::{Model, SizeError};
+pub use spec::{
+    BodySpec, DriveSpec, Fidelity, MountSpec, RobotSpec, RotorBody, RotorSpec, SpringSpec, TransmissionSpec,
+};
+pub use spring::{Knot, Spring};

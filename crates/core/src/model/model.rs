@@ -1,0 +1,92 @@
+//! The view of a robot that every algorithm takes.
+
+use super::{Body, Knot, body::index};
+use crate::Scalar;
+use crate::spatial::Vec3;
+use core::fmt;
+
+/// A robot as the algorithms see it: records in storage that someone else owns.
+#[derive(Clone, Copy, Debug)]
+pub struct Model<'a, T> {
+    pub(crate) bodies: &'a [Body<T>],
+    pub(crate) knots: &'a [Knot<T>],
+    pub(crate) gravity: Vec3<T>,
+    pub(crate) nq: usize,
+    pub(crate) nv: usize,
+}
+
+impl<'a, T: Scalar> Model<'a, T> {
+    /// A view of records that [`RobotSpec::lower`](super::RobotSpec::lower) wrote, possibly cast to another scalar since.
+    /// `gravity` is in world axes [m/s²].
+    pub fn new(bodies: &'a [Body<T>], knots: &'a [Knot<T>], gravity: Vec3<T>) -> Self {
+        let nq = bodies.iter().map(|b| b.joint.nq()).sum();
+        let nv = bodies.iter().map(|b| b.joint.nv()).sum();
+        Self { bodies, knots, gravity, nq, nv }
+    }
+
+    /// The records, parents before children.
+    pub fn bodies(&self) -> &'a [Body<T>] {
+        self.bodies
+    }
+
+    /// Pieces of all spring tables.
+    pub fn knots(&self) -> &'a [Knot<T>] {
+        self.knots
+    }
+
+    /// Acceleration of gravity in world axes [m/s²].
+    pub fn gravity(&self) -> Vec3<T> {
+        self.gravity
+    }
+
+    /// The same robot under another gravity.
+    pub fn with_gravity(self, gravity: Vec3<T>) -> Self {
+        Self { gravity, ..self }
+    }
+
+    /// Length of `q`.
+    pub fn nq(&self) -> usize {
+        self.nq
+    }
+
+    /// Length of `qd`, and of every other vector over the joints: `theta`, `tau`, …
+    pub fn nv(&self) -> usize {
+        self.nv
+    }
+
+    /// Whether a rigidly geared rotor sits on a body other than its joint's parent. Such a rotor couples its joint to bodies
+    /// that are not neighbours, and forward dynamics takes the joint-space route (PHYSICS §3).
+    pub fn has_remote_rigid_rotor(&self) -> bool {
+        self.bodies.iter().any(|b| {
+            b.drive.as_ref().is_some_and(|d| {
+                d.elastic.is_none() && index(d.rotor.mount).is_some_and(|m| Some(m) != index(b.parent))
+            })
+        })
+    }
+}
+
+/// A slice of the wrong length was passed to an algorithm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SizeError {
+    /// The argument.
+    pub argument: &'static str,
+    /// The length the model asks for.
+    pub expected: usize,
+    /// The length given.
+    pub given: usize,
+}
+
+impl fmt::Display for SizeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` has {} entries, but the model needs {}", self.argument, self.given, self.expected)
+    }
+}
+
+impl core::error::Error for SizeError {}
+
+impl SizeError {
+    #[inline]
+    pub(crate) fn check(argument: &'static str, given: usize, expected: usize) -> Result<(), Self> {
+        if given == expected { Ok(()) } else { Err(Self { argument, expected, given }) }
+    }
+}

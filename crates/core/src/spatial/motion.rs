@@ -1,0 +1,81 @@
+//! Motion vectors: spatial velocities and accelerations.
+
+use super::{Force, Vec3};
+use crate::Scalar;
+use core::ops::{Add, AddAssign, Sub};
+
+/// A spatial motion vector, angular part first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<T> {
+    /// Angular velocity `ω` [rad/s] or acceleration [rad/s²].
+    pub ang: Vec3<T>,
+    /// Linear velocity of the body point at the frame's origin [m/s], or the linear part of the spatial acceleration [m/s²].
+    pub lin: Vec3<T>,
+}
+
+impl<T: Scalar> Motion<T> {
+    /// The zero vector.
+    #[inline]
+    pub fn zero() -> Self {
+        Self { ang: Vec3::zero(), lin: Vec3::zero() }
+    }
+
+    /// `s m`.
+    #[inline]
+    pub fn scale(self, s: T) -> Self {
+        Self { ang: self.ang.scale(s), lin: self.lin.scale(s) }
+    }
+
+    /// `v × m`, the rate of a motion vector carried along by `v` (RBDA eq. 2.31).
+    #[inline]
+    pub fn cross(self, m: Self) -> Self {
+        Self { ang: self.ang.cross(m.ang), lin: self.ang.cross(m.lin) + self.lin.cross(m.ang) }
+    }
+
+    /// `v ×* f`, the rate of a force vector carried along by `v` (RBDA eq. 2.32).
+    #[inline]
+    pub fn cross_force(self, f: Force<T>) -> Force<T> {
+        Force { ang: self.ang.cross(f.ang) + self.lin.cross(f.lin), lin: self.ang.cross(f.lin) }
+    }
+
+    /// The scalar product `m · f`: a power, if `m` is a velocity.
+    #[inline]
+    pub fn dot(self, f: Force<T>) -> T {
+        self.ang.dot(f.ang) + self.lin.dot(f.lin)
+    }
+
+    /// The six coordinates, angular first.
+    #[inline]
+    pub fn to_array(self) -> [T; 6] {
+        [self.ang.x, self.ang.y, self.ang.z, self.lin.x, self.lin.y, self.lin.z]
+    }
+}
+
+impl<T> From<[T; 6]> for Motion<T> {
+    fn from([a, b, c, d, e, f]: [T; 6]) -> Self {
+        Self { ang: Vec3::new(a, b, c), lin: Vec3::new(d, e, f) }
+    }
+}
+
+impl<T: Scalar> Add for Motion<T> {
+    type Output = Self;
+    #[inline]
+    fn add(self, b: Self) -> Self {
+        Self { ang: self.ang + b.ang, lin: self.lin + b.lin }
+    }
+}
+
+impl<T: Scalar> Sub for Motion<T> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, b: Self) -> Self {
+        Self { ang: self.ang - b.ang, lin: self.lin - b.lin }
+    }
+}
+
+impl<T: Scalar> AddAssign for Motion<T> {
+    #[inline]
+    fn add_assign(&mut self, b: Self) {
+        *self = *self + b;
+    }
+}

@@ -1,0 +1,8 @@
+//! From files to motion: URDF and YAML in, simulation, records out.
+
+pub mod error;
+pub mod record;
+pub mod robot;
+
+pub use error::{Error, ErrorKind};
+pub use robot::Robot;

@@ -1,0 +1,141 @@
+//! A robot as loaded from files: the description in the user's frames, names, frames, and where every number came from.
+
+use crate::error::{Error, Warning};
+use gyroflex::model::{Body, BodySpec, Fidelity, Knot, Model, RobotSpec};
+use gyroflex::spatial::{Transform, Vec3};
+
+/// A loaded robot.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    /// The robot's name.
+    pub name: String,
+    /// One entry per moving body (and joint), parents before children; a floating root is entry 0.
+    pub joints: Vec<Joint>,
+    /// The description the core lowers, one entry per joint.
+    pub bodies: Vec<BodySpec>,
+    /// Points of all spring tables.
+    pub spring_tables: Vec<[f64; 2]>,
+    /// Acceleration of gravity in world axes [m/s²].
+    pub gravity: Vec3<f64>,
+    /// The model commands use unless told otherwise.
+    pub fidelity: Fidelity,
+    /// Every URDF link, moving or fused, in the order of the file.
+    pub links: Vec<Link>,
+    /// Where every number of every joint came from.
+    pub table: Vec<Entry>,
+    /// What was ignored or assumed.
+    pub warnings: Vec<Warning>,
+    /// The files the robot was read from, the URDF first.
+    pub sources: Vec<SourceFile>,
+}
+
+/// A joint by its names and limits.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Name in the URDF; `root` for a floating root.
+    pub name: String,
+    /// URDF type: `revolute`, `continuous`, `prismatic` or `floating`.
+    pub urdf_type: String,
+    /// Name of the parent link in the URDF; `world` for a floating root.
+    pub parent_link: String,
+    /// Name of the link it moves.
+    pub child_link: String,
+    /// Lower and upper position limit [rad or m], where given.
+    pub limits: Option<[f64; 2]>,
+    /// Largest velocity [rad/s or m/s], where given.
+    pub max_velocity: Option<f64>,
+    /// Largest torque the controller may ask for, link side [N m or N], where given.
+    pub max_torque: Option<f64>,
+}
+
+/// A URDF link: a frame of a moving body, or of the world.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// Name in the URDF.
+    pub name: String,
+    /// The body it is part of; `None` if it does not move.
+    pub body: Option<usize>,
+    /// Pose of the link frame in that body's link frame, or in the world.
+    pub placement: Transform<f64>,
+    /// Name of the parent link in the URDF, for `/tf`; `None` for the root.
+    pub parent: Option<String>,
+}
+
+/// One number of one joint, and its origin: a row of the merged table.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Joint name.
+    pub joint: String,
+    /// The key as in the drives YAML, e.g. `transmission.stiffness`.
+    pub key: String,
+    /// The value, as text.
+    pub value: String,
+    /// Unit, empty if none.
+    pub unit: &'static str,
+    /// File and line or rule it came from, e.g. `robot.yaml`, `robot.urdf:31 <dynamics>`, `default`.
+    pub source: String,
+}
+
+/// The content of a file, kept for the log's attachments.
+#[derive(Clone, Debug)]
+pub struct SourceFile {
+    /// File name without folders.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// Records in storage of our own, and a view of them on demand.
+#[derive(Clone, Debug)]
+pub struct OwnedModel {
+    bodies: Vec<Body<f64>>,
+    knots: Vec<Knot<f64>>,
+    gravity: Vec3<f64>,
+    /// Which physics the records hold.
+    pub fidelity: Fidelity,
+}
+
+impl Robot {
+    /// The description as the core takes it.
+    pub fn spec(&self) -> RobotSpec<'_> {
+        RobotSpec { bodies: &self.bodies, spring_tables: &self.spring_tables, gravity: self.gravity }
+    }
+
+    /// Lowers the robot to the records of one model.
+    ///
+    /// # Errors
+    /// Names the joint and the link that are not physical.
+    pub fn model(&self, fidelity: Fidelity) -> Result<OwnedModel, Error> {
+        let spec = self.spec();
+        let mut bodies = vec![Body::empty(); self.bodies.len()];
+        let mut knots = vec![Knot::EMPTY; spec.knots_needed()];
+        spec.lower(fidelity, &mut bodies, &mut knots).map_err(|e| self.model_error(e))?;
+        Ok(OwnedModel { bodies, knots, gravity: self.gravity, fidelity })
+    }
+
+    /// Number of single-degree-of-freedom joints: all but a floating root.
+    pub fn is_floating(&self) -> bool {
+        self.joints.first().is_some_and(|j| j.urdf_type == "floating")
+    }
+}
+
+impl OwnedModel {
+    /// The view the algorithms take.
+    pub fn view(&self) -> Model<'_, f64> {
+        Model::new(&self.bodies, &self.knots, self.gravity)
+    }
+}
+
+impl Robot {
+    /// Names the joint behind an error of the core.
+    fn model_error(&self, e: gyroflex::model::ModelError) -> Error {
+        let joint = self.joints.get(e.body);
+        Error {
+            kind: crate::ErrorKind::Model,
+            file: self.sources.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", "),
+            element: joint.map_or_else(String::new, |j| format!("joint `{}` (link `{}`)", j.name, j.child_link)),
+            problem: e.defect.to_string(),
+            remedy: String::new(),
+        }
+    }
+}

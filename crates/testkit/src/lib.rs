@@ -1,0 +1,1 @@
+//! Random robots, dense oracles and tolerances.

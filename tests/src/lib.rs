@@ -1,0 +1,1 @@
+//! Laws that cross crates; see the files beside `src`.
