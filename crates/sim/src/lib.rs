@@ -1,6 +1,7 @@
 //! From files to motion: URDF and YAML in, simulation, records out.
 
 pub mod error;
+pub mod load;
 pub mod record;
 pub mod robot;
 
