@@ -15,6 +15,8 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+pub mod dynamics;
+pub mod integrate;
 pub mod model;
 pub mod scalar;
 pub mod spatial;

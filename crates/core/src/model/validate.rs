@@ -129,11 +129,11 @@ impl RobotSpec<'_> {
                 moment += r.xx + r.yy + r.zz;
             }
             for drive in other.drive.iter() {
-                if let (Some(rotor), Some(mount)) = (drive.rotor.body, drive.rotor.mount.body) {
-                    if self.is_at_or_beyond(mount, i) {
-                        mass += rotor.mass;
-                        moment += rotor.transverse_inertia;
-                    }
+                if let (Some(rotor), Some(mount)) = (drive.rotor.body, drive.rotor.mount.body)
+                    && self.is_at_or_beyond(mount, i)
+                {
+                    mass += rotor.mass;
+                    moment += rotor.transverse_inertia;
                 }
             }
         }
