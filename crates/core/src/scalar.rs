@@ -25,6 +25,8 @@ pub trait Scalar:
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle [rad].
     fn sin_cos(self) -> (Self, Self);
+    /// Angle [rad] of the point with ordinate `self` and abscissa `x`, in `(−π, π]`.
+    fn atan2(self, x: Self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
     /// Natural exponential.
@@ -43,7 +45,7 @@ pub trait Scalar:
 }
 
 macro_rules! float_scalar {
-    ($float:ident, $sqrt:path, $sin:path, $cos:path, $tanh:path, $exp:path) => {
+    ($float:ident, $sqrt:path, $sin:path, $cos:path, $atan2:path, $tanh:path, $exp:path) => {
         impl Scalar for $float {
             #[inline]
             fn from_f64(x: f64) -> Self {
@@ -56,6 +58,10 @@ macro_rules! float_scalar {
             #[inline]
             fn sin_cos(self) -> (Self, Self) {
                 ($sin(self), $cos(self))
+            }
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                $atan2(self, x)
             }
             #[inline]
             fn tanh(self) -> Self {
@@ -76,15 +82,15 @@ macro_rules! float_scalar {
 #[cfg(feature = "std")]
 mod elementary {
     use super::Scalar;
-    float_scalar!(f32, f32::sqrt, f32::sin, f32::cos, f32::tanh, f32::exp);
-    float_scalar!(f64, f64::sqrt, f64::sin, f64::cos, f64::tanh, f64::exp);
+    float_scalar!(f32, f32::sqrt, f32::sin, f32::cos, f32::atan2, f32::tanh, f32::exp);
+    float_scalar!(f64, f64::sqrt, f64::sin, f64::cos, f64::atan2, f64::tanh, f64::exp);
 }
 
 #[cfg(all(feature = "libm", not(feature = "std")))]
 mod elementary {
     use super::Scalar;
-    float_scalar!(f32, libm::sqrtf, libm::sinf, libm::cosf, libm::tanhf, libm::expf);
-    float_scalar!(f64, libm::sqrt, libm::sin, libm::cos, libm::tanh, libm::exp);
+    float_scalar!(f32, libm::sqrtf, libm::sinf, libm::cosf, libm::atan2f, libm::tanhf, libm::expf);
+    float_scalar!(f64, libm::sqrt, libm::sin, libm::cos, libm::atan2, libm::tanh, libm::exp);
 }
 
 #[cfg(not(any(feature = "std", feature = "libm")))]

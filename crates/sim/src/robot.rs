@@ -124,6 +124,11 @@ impl OwnedModel {
     pub fn view(&self) -> Model<'_, f64> {
         Model::new(&self.bodies, &self.knots, self.gravity)
     }
+
+    /// Sets gravity in world axes [m/s²].
+    pub fn set_gravity(&mut self, gravity: Vec3<f64>) {
+        self.gravity = gravity;
+    }
 }
 
 impl Robot {

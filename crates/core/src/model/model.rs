@@ -13,6 +13,7 @@ pub struct Model<'a, T> {
     pub(crate) gravity: Vec3<T>,
     pub(crate) nq: usize,
     pub(crate) nv: usize,
+    remote_rigid_rotor: bool,
 }
 
 impl<'a, T: Scalar> Model<'a, T> {
@@ -21,7 +22,8 @@ impl<'a, T: Scalar> Model<'a, T> {
     pub fn new(bodies: &'a [Body<T>], knots: &'a [Knot<T>], gravity: Vec3<T>) -> Self {
         let nq = bodies.iter().map(|b| b.joint.nq()).sum();
         let nv = bodies.iter().map(|b| b.joint.nv()).sum();
-        Self { bodies, knots, gravity, nq, nv }
+        let remote_rigid_rotor = bodies.iter().any(carries_remotely);
+        Self { bodies, knots, gravity, nq, nv, remote_rigid_rotor }
     }
 
     /// The records, parents before children.
@@ -57,12 +59,14 @@ impl<'a, T: Scalar> Model<'a, T> {
     /// Whether a rigidly geared rotor sits on a body other than its joint's parent. Such a rotor couples its joint to bodies
     /// that are not neighbours, and forward dynamics takes the joint-space route (PHYSICS §3).
     pub fn has_remote_rigid_rotor(&self) -> bool {
-        self.bodies.iter().any(|b| {
-            b.drive.as_ref().is_some_and(|d| {
-                d.elastic.is_none() && index(d.rotor.mount).is_some_and(|m| Some(m) != index(b.parent))
-            })
-        })
+        self.remote_rigid_rotor
     }
+}
+
+/// Whether a joint's rotor is rigidly geared and sits on a body other than the joint's parent.
+fn carries_remotely<T: Scalar>(body: &Body<T>) -> bool {
+    let remote = |m: usize| Some(m) != body.parent();
+    body.drive.as_ref().is_some_and(|d| d.elastic.is_none() && index(d.rotor.mount).is_some_and(remote))
 }
 
 /// A slice of the wrong length was passed to an algorithm.

@@ -1,6 +1,6 @@
 //! Inertia of an articulated body.
 
-use super::{Force, Mat3, Motion, SpatialInertia, SymMat3, Transform};
+use super::{Force, Mat3, Motion, SpatialInertia, SymMat3, Transform, Vec3};
 use crate::Scalar;
 use core::ops::AddAssign;
 
@@ -67,5 +67,46 @@ impl<T: Scalar> AddAssign for ArticulatedInertia<T> {
         self.ang += b.ang;
         self.mixed = self.mixed + b.mixed;
         self.lin += b.lin;
+    }
+}
+
+impl<T: Scalar> ArticulatedInertia<T> {
+    /// `Iᴬ⁻¹ f`, by eliminating the linear part: `M` and its Schur complement in `I` are both symmetric and positive.
+    pub fn solve(&self, f: Force<T>) -> Motion<T> {
+        // M v = f − Hᵀ ω  into  n = I ω + H v:   (I − H M⁻¹ Hᵀ) ω = n − H M⁻¹ f
+        let m = Cholesky::of(self.lin);
+        let columns = self.mixed.rows.map(|row| m.solve(row));
+        let schur = self.ang - (self.mixed * Mat3 { rows: columns }.transpose()).symmetric();
+        let ang = Cholesky::of(schur).solve(f.ang - self.mixed * m.solve(f.lin));
+        Motion { ang, lin: m.solve(f.lin - self.mixed.transpose_mul(ang)) }
+    }
+}
+
+/// `A = L D Lᵀ` of a symmetric positive 3×3 matrix, with the reciprocals of `D`.
+struct Cholesky<T> {
+    l10: T,
+    l20: T,
+    l21: T,
+    d_inv: [T; 3],
+}
+
+impl<T: Scalar> Cholesky<T> {
+    fn of(a: SymMat3<T>) -> Self {
+        let d0 = T::one() / a.xx;
+        let (l10, l20) = (a.xy * d0, a.xz * d0);
+        let d1 = T::one() / (a.yy - l10 * a.xy);
+        let l21 = (a.yz - l20 * a.xy) * d1;
+        let d2 = T::one() / (a.zz - l20 * a.xz - l21 * (a.yz - l20 * a.xy));
+        Self { l10, l20, l21, d_inv: [d0, d1, d2] }
+    }
+
+    fn solve(&self, b: Vec3<T>) -> Vec3<T> {
+        let y0 = b.x;
+        let y1 = b.y - self.l10 * y0;
+        let y2 = b.z - self.l20 * y0 - self.l21 * y1;
+        let z = y2 * self.d_inv[2];
+        let y = y1 * self.d_inv[1] - self.l21 * z;
+        let x = y0 * self.d_inv[0] - self.l10 * y - self.l20 * z;
+        Vec3::new(x, y, z)
     }
 }

@@ -1,0 +1,77 @@
+//! Torques of one joint's transmission, rotor and friction: all that a drive adds to a joint.
+
+use super::State;
+use crate::Scalar;
+use crate::model::{Body, Elastic, Knot, Rotor};
+
+/// Deflection of an elastic transmission and the torque through it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Transmitted<T> {
+    /// `δ = θ − q − e(θ)` [rad].
+    pub(super) deflection: T,
+    /// `δ̇ = (1 − e') θ̇ − q̇` [rad/s].
+    pub(super) rate: T,
+    /// `τ_J = k(δ) + D δ̇` [N m], on the link.
+    pub(super) tau_j: T,
+    /// `1 − e'(θ)`: what of `τ_J` the motor feels, by virtual work (PHYSICS §1).
+    pub(super) on_motor: T,
+}
+
+/// The transmission at its present state.
+#[inline]
+pub(super) fn transmitted<T: Scalar>(
+    elastic: &Elastic<T>,
+    rotor: &Rotor<T>,
+    i: usize,
+    iq: usize,
+    state: &State<T>,
+    knots: &[Knot<T>],
+) -> Transmitted<T> {
+    let (e, slope) = transmission_error(elastic, rotor, state.theta[i]);
+    let on_motor = T::one() - slope;
+    let deflection = state.theta[i] - state.q[iq] - e;
+    let rate = on_motor * state.thetad[i] - state.qd[i];
+    let tau_j = elastic.spring.torque(deflection, knots) + elastic.damping * rate;
+    Transmitted { deflection, rate, tau_j, on_motor }
+}
+
+/// `e(θ)` and `e'(θ)`, both zero for a perfect gear.
+#[inline]
+pub(super) fn transmission_error<T: Scalar>(elastic: &Elastic<T>, rotor: &Rotor<T>, theta: T) -> (T, T) {
+    match &elastic.error {
+        Some(error) => error.value_and_slope(theta, rotor.gear_ratio),
+        None => (T::zero(), T::zero()),
+    }
+}
+
+/// What acts on a joint before anything moves: on its link, and on its rotor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Drives<T> {
+    /// Generalised force on the joint's link side: transmission or motor, external load, link friction [N m].
+    pub(super) on_link: T,
+    /// Net torque on an elastic joint's rotor, reflected: `τ − (1 − e') τ_J − N f_m` [N m]; zero elsewhere.
+    pub(super) on_rotor: T,
+    /// Torque of the transmission, or what motor and motor friction leave for a rigid gear [N m].
+    pub(super) tau_j: T,
+}
+
+/// Collects the known torques at a joint of one degree of freedom.
+#[inline]
+pub(super) fn drives<T: Scalar>(body: &Body<T>, state: &State<T>, tau: T, tau_ext: T, knots: &[Knot<T>]) -> Drives<T> {
+    let (i, iq) = (body.v_index(), body.q_index());
+    let load = tau_ext - body.friction.torque(state.qd[i]);
+    let Some(drive) = &body.drive else {
+        return Drives { on_link: tau + load, on_rotor: T::zero(), tau_j: tau };
+    };
+    match &drive.elastic {
+        Some(elastic) => {
+            let t = transmitted(elastic, &drive.rotor, i, iq, state, knots);
+            let on_rotor = tau - t.on_motor * t.tau_j - drive.rotor.reflected_friction(state.thetad[i]);
+            Drives { on_link: t.tau_j + load, on_rotor, tau_j: t.tau_j }
+        }
+        None => {
+            let net = tau - drive.rotor.reflected_friction(state.qd[i]);
+            Drives { on_link: net + load, on_rotor: T::zero(), tau_j: net }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Where links and frames are, how they move, and how joint velocities move them.
+
+use super::check_scratch;
+use crate::Scalar;
+use crate::model::{JointKind, Model, SizeError};
+use crate::spatial::{Motion, Transform, Vec3};
+
+/// A frame fixed to a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<T> {
+    /// Index of the body.
+    pub body: usize,
+    /// Pose of the frame in the body's link frame.
+    pub placement: Transform<T>,
+}
+
+/// The axes in which a Jacobian's rows are given. Its reference point is the frame's origin in both.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Axes of the world.
+    World,
+    /// Axes of the frame itself.
+    Local,
+}
+
+/// Pose of every link frame in the world: one transform per body, from the world to the link frame.
+///
+/// # Errors
+/// [`SizeError`] if a slice does not fit the model; nothing is written then.
+pub fn placements<T: Scalar>(model: &Model<T>, q: &[T], out: &mut [Transform<T>]) -> Result<(), SizeError> {
+    SizeError::check("q", q.len(), model.nq)?;
+    SizeError::check("out", out.len(), model.bodies.len())?;
+    // X_0i = X_i X_0p, in the frames of the recursion; the user's link frames come last.
+    for (i, body) in model.bodies.iter().enumerate() {
+        let x = body.transform(q);
+        out[i] = body.parent().map_or(x, |p| x.after(out[p]));
+    }
+    for (body, pose) in model.bodies.iter().zip(out.iter_mut()) {
+        *pose = body.frame.after(*pose);
+    }
+    Ok(())
+}
+
+/// Spatial velocity of every link in its own link frame: one motion vector per body, angular first.
+///
+/// # Errors
+/// [`SizeError`] if a slice does not fit the model; nothing is written then.
+pub fn velocities<T: Scalar>(model: &Model<T>, q: &[T], qd: &[T], out: &mut [Motion<T>]) -> Result<(), SizeError> {
+    SizeError::check("q", q.len(), model.nq)?;
+    SizeError::check("qd", qd.len(), model.nv)?;
+    check_scratch(model, out)?;
+    // v = X v_p + S q̇
+    for (i, body) in model.bodies.iter().enumerate() {
+        let v_p = body.parent().map_or(Motion::zero(), |p| out[p]);
+        out[i] = body.transform(q).motion(v_p) + body.joint_velocity(qd);
+    }
+    for (body, v) in model.bodies.iter().zip(out.iter_mut()) {
+        *v = body.frame.motion(*v);
+    }
+    Ok(())
+}
+
+/// Jacobian of a frame, `6 × nv` by rows, angular rows first: `J q̇` is the velocity of the frame's origin and the angular
+/// velocity of the frame, in the axes asked for. Columns of joints that do not move the frame are zero.
+///
+/// `poses` has one entry per body and holds what [`placements`] wrote for the same `q`.
+///
+/// # Errors
+/// [`SizeError`] if a slice does not fit the model, or the frame's body is not one of its bodies; nothing is written then.
+pub fn jacobian<T: Scalar>(
+    model: &Model<T>,
+    poses: &[Transform<T>],
+    frame: Frame<T>,
+    axes: Axes,
+    out: &mut [T],
+) -> Result<(), SizeError> {
+    let nv = model.nv;
+    SizeError::check("poses", poses.len(), model.bodies.len())?;
+    SizeError::check("out", out.len(), 6 * nv)?;
+    if frame.body >= model.bodies.len() {
+        return Err(SizeError { argument: "frame.body", expected: model.bodies.len(), given: frame.body });
+    }
+    out.fill(T::zero());
+    let target = frame.placement.after(poses[frame.body]);
+    let mut at = Some(frame.body);
+    while let Some(b) = at {
+        let body = &model.bodies[b];
+        // From the recursion's frame of the supporting body, where S is an axis, to the target frame.
+        let here = body.frame.inverse().after(poses[b]);
+        let to_target = target.after(here.inverse());
+        for c in 0..body.joint.nv() {
+            let mut unit = [T::zero(); 6];
+            let entry = match body.joint {
+                JointKind::Revolute => 2,
+                JointKind::Prismatic => 5,
+                JointKind::Floating => c,
+            };
+            unit[entry] = T::one();
+            let local = to_target.motion(Motion::from(unit));
+            let column = match axes {
+                Axes::Local => local,
+                Axes::World => turned(local, |v| target.rot.transpose_mul(v)),
+            };
+            for (row, value) in column.to_array().into_iter().enumerate() {
+                out[row * nv + body.v_index() + c] = value;
+            }
+        }
+        at = body.parent();
+    }
+    Ok(())
+}
+
+fn turned<T: Scalar>(m: Motion<T>, turn: impl Fn(Vec3<T>) -> Vec3<T>) -> Motion<T> {
+    Motion { ang: turn(m.ang), lin: turn(m.lin) }
+}

@@ -1,0 +1,106 @@
+//! The equations of motion and everything computed from them, one algorithm a file.
+//!
+//! Every function takes a [`Model`], input slices, scratch records of its own family and output slices. Scratch keeps
+//! nothing between calls. Slices over the joints (`qd`, `theta`, `tau`, …) have [`Model::nv`] entries, `q` has
+//! [`Model::nq`]. `theta`, `thetad` and `thetadd` are read and written in full length, but mean something only at joints
+//! with an elastic transmission; everywhere else the motor turns with the joint.
+
+mod aba;
+mod crba;
+mod drive_torque;
+mod energy;
+mod forward;
+mod joint_space;
+mod kinematics;
+mod rnea;
+
+pub use aba::{AbaScratch, aba};
+pub use crba::{CrbaScratch, coupling, crba, reflected_inertia};
+pub use energy::{Energy, Power, energy, power};
+pub use forward::{ForwardScratch, forward_dynamics, matrix_len};
+pub use joint_space::forward_in_joint_space;
+pub use kinematics::{Axes, Frame, jacobian, placements, velocities};
+pub use rnea::{RneaScratch, rnea};
+
+use crate::Scalar;
+use crate::model::{Model, SizeError};
+use crate::spatial::Force;
+
+/// Where a robot is and how it moves.
+#[derive(Clone, Copy, Debug)]
+pub struct State<'a, T> {
+    /// Joint positions: `nq` entries [rad or m]; a floating root leads with `x y z qx qy qz qw`.
+    pub q: &'a [T],
+    /// Joint velocities: `nv` entries; a floating root leads with its twist in its own frame, angular first.
+    pub qd: &'a [T],
+    /// Motor positions reflected through the gear: `nv` entries, read at joints with an elastic transmission.
+    pub theta: &'a [T],
+    /// Motor velocities reflected through the gear: `nv` entries, read at joints with an elastic transmission.
+    pub thetad: &'a [T],
+}
+
+/// Loads from outside, besides the motors.
+#[derive(Clone, Copy, Debug)]
+pub struct External<'a, T> {
+    /// Generalised forces on the link side of the joints: `nv` entries [N m or N], or empty for none.
+    pub tau: &'a [T],
+    /// One wrench per body, in its link frame about its origin, or empty for none.
+    pub wrenches: &'a [Force<T>],
+}
+
+impl<T> External<'_, T> {
+    /// No loads.
+    pub const fn none() -> Self {
+        Self { tau: &[], wrenches: &[] }
+    }
+}
+
+/// What forward dynamics writes: `nv` entries each.
+#[derive(Debug)]
+pub struct Forward<'a, T> {
+    /// Joint accelerations; of a floating root the spatial acceleration in its own frame, angular first.
+    pub qdd: &'a mut [T],
+    /// Reflected motor accelerations; equal to `qdd` where there is no elastic transmission.
+    pub thetadd: &'a mut [T],
+    /// Torque the transmission, rigid gear or ideal motor exerts on the joint, link side [N m or N].
+    pub tau_j: &'a mut [T],
+}
+
+/// The motion inverse dynamics is asked for: `nv` entries each.
+#[derive(Clone, Copy, Debug)]
+pub struct Acceleration<'a, T> {
+    /// Joint accelerations.
+    pub qdd: &'a [T],
+    /// Reflected motor accelerations, read at joints with an elastic transmission.
+    pub thetadd: &'a [T],
+}
+
+/// What inverse dynamics writes: `nv` entries each.
+#[derive(Debug)]
+pub struct Inverse<'a, T> {
+    /// Torque that the transmission must exert on the joint, link side [N m or N].
+    pub tau_j: &'a mut [T],
+    /// Torque that the motor must exert, reflected to the link side [N m or N].
+    pub tau: &'a mut [T],
+}
+
+fn check_state<T: Scalar>(model: &Model<T>, state: &State<T>) -> Result<(), SizeError> {
+    SizeError::check("q", state.q.len(), model.nq)?;
+    SizeError::check("qd", state.qd.len(), model.nv)?;
+    SizeError::check("theta", state.theta.len(), model.nv)?;
+    SizeError::check("thetad", state.thetad.len(), model.nv)
+}
+
+fn check_external<T: Scalar>(model: &Model<T>, ext: &External<T>) -> Result<(), SizeError> {
+    if !ext.tau.is_empty() {
+        SizeError::check("external tau", ext.tau.len(), model.nv)?;
+    }
+    if !ext.wrenches.is_empty() {
+        SizeError::check("external wrenches", ext.wrenches.len(), model.bodies.len())?;
+    }
+    Ok(())
+}
+
+fn check_scratch<T: Scalar, S>(model: &Model<T>, scratch: &[S]) -> Result<(), SizeError> {
+    SizeError::check("scratch", scratch.len(), model.bodies.len())
+}

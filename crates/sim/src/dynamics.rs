@@ -1,0 +1,198 @@
+//! A model together with the scratch its algorithms need: allocated once, nothing per call.
+
+use crate::error::{Error, ErrorKind};
+use crate::robot::OwnedModel;
+use gyroflex::dynamics::{
+    self, AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, Power,
+    RneaScratch, State,
+};
+use gyroflex::integrate::{self, StateMut};
+use gyroflex::model::{Model, SizeError};
+use gyroflex::spatial::{Motion, Transform, Vec3};
+
+/// The algorithms of the core over one model, with storage of their own.
+#[derive(Clone, Debug)]
+pub struct Dynamics {
+    model: OwnedModel,
+    aba: Vec<AbaScratch<f64>>,
+    matrix: Vec<f64>,
+    rnea: Vec<RneaScratch<f64>>,
+    crba: Vec<CrbaScratch<f64>>,
+    moving: Vec<(Transform<f64>, Motion<f64>)>,
+    poses: Vec<Transform<f64>>,
+    twists: Vec<Motion<f64>>,
+    work: Vec<f64>,
+}
+
+impl Dynamics {
+    /// Takes the model and allocates for it.
+    pub fn new(model: OwnedModel) -> Self {
+        let view = model.view();
+        let n = view.bodies().len();
+        let work = integrate::rk4_len(&view).max(integrate::euler_len(&view));
+        let matrix = dynamics::matrix_len(&view);
+        Self {
+            aba: vec![AbaScratch::new(); n],
+            matrix: vec![0.0; matrix],
+            rnea: vec![RneaScratch::new(); n],
+            crba: vec![CrbaScratch::new(); n],
+            moving: vec![(Transform::identity(), Motion::zero()); n],
+            poses: vec![Transform::identity(); n],
+            twists: vec![Motion::zero(); n],
+            work: vec![0.0; work],
+            model,
+        }
+    }
+
+    /// The model.
+    pub fn model(&self) -> Model<'_, f64> {
+        self.model.view()
+    }
+
+    /// Sets gravity in world axes [m/s²].
+    pub fn set_gravity(&mut self, gravity: Vec3<f64>) {
+        self.model.set_gravity(gravity);
+    }
+
+    /// The model and what it was lowered as.
+    pub fn owned_model(&self) -> &OwnedModel {
+        &self.model
+    }
+
+    /// Length of `q`.
+    pub fn nq(&self) -> usize {
+        self.model().nq()
+    }
+
+    /// Length of every other vector over the joints.
+    pub fn nv(&self) -> usize {
+        self.model().nv()
+    }
+
+    /// Accelerations and transmission torques; see [`dynamics::forward_dynamics`].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn forward(
+        &mut self,
+        state: State<f64>,
+        tau: &[f64],
+        ext: External<f64>,
+        out: Forward<f64>,
+    ) -> Result<(), SizeError> {
+        let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
+        dynamics::forward_dynamics(&self.model.view(), state, tau, ext, scratch, out)
+    }
+
+    /// Torques that make the robot accelerate as asked; see [`dynamics::rnea`].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn inverse(
+        &mut self,
+        state: State<f64>,
+        accel: Acceleration<f64>,
+        ext: External<f64>,
+        out: Inverse<f64>,
+    ) -> Result<(), SizeError> {
+        dynamics::rnea(&self.model.view(), state, accel, ext, &mut self.rnea, out)
+    }
+
+    /// `M_l(q)`, `nv × nv` by rows; see [`dynamics::crba`].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn mass_matrix(&mut self, q: &[f64], m: &mut [f64]) -> Result<(), SizeError> {
+        dynamics::crba(&self.model.view(), q, &mut self.crba, m)
+    }
+
+    /// `S(q)`, `nv × nv` by rows; see [`dynamics::coupling`].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn coupling(&mut self, q: &[f64], s: &mut [f64]) -> Result<(), SizeError> {
+        dynamics::coupling(&self.model.view(), q, &mut self.crba, s)
+    }
+
+    /// Diagonal of `B`, `nv` entries; see [`dynamics::reflected_inertia`].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn reflected_inertia(&self, b: &mut [f64]) -> Result<(), SizeError> {
+        dynamics::reflected_inertia(&self.model.view(), b)
+    }
+
+    /// Kinetic, gravity and elastic energy [J].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn energy(&mut self, state: State<f64>) -> Result<Energy<f64>, SizeError> {
+        dynamics::energy(&self.model.view(), state, &mut self.moving)
+    }
+
+    /// Power supplied and dissipated [W].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn power(&mut self, state: State<f64>, tau: &[f64], ext: External<f64>) -> Result<Power<f64>, SizeError> {
+        dynamics::power(&self.model.view(), state, tau, ext, &mut self.moving)
+    }
+
+    /// Transform from the world to every body's link frame.
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn placements(&mut self, q: &[f64]) -> Result<&[Transform<f64>], SizeError> {
+        dynamics::placements(&self.model.view(), q, &mut self.poses)?;
+        Ok(&self.poses)
+    }
+
+    /// Spatial velocity of every body in its link frame, angular part first.
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn velocities(&mut self, q: &[f64], qd: &[f64]) -> Result<&[Motion<f64>], SizeError> {
+        dynamics::velocities(&self.model.view(), q, qd, &mut self.twists)?;
+        Ok(&self.twists)
+    }
+
+    /// One step of the classical Runge-Kutta scheme; see [`integrate::rk4`].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn rk4(&mut self, state: StateMut<f64>, tau: &[f64], ext: External<f64>, step: f64) -> Result<(), SizeError> {
+        let view = self.model.view();
+        let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
+        let work = &mut self.work[..integrate::rk4_len(&view)];
+        integrate::rk4(&view, state, tau, ext, step, scratch, work)
+    }
+
+    /// One step of semi-implicit Euler; see [`integrate::semi_implicit_euler`].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn semi_implicit_euler(
+        &mut self,
+        state: StateMut<f64>,
+        tau: &[f64],
+        ext: External<f64>,
+        step: f64,
+    ) -> Result<(), SizeError> {
+        let view = self.model.view();
+        let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
+        let work = &mut self.work[..integrate::euler_len(&view)];
+        integrate::semi_implicit_euler(&view, state, tau, ext, step, scratch, work)
+    }
+}
+
+impl From<SizeError> for Error {
+    fn from(e: SizeError) -> Self {
+        Self {
+            kind: ErrorKind::Shape,
+            file: String::new(),
+            element: e.argument.to_string(),
+            problem: e.to_string(),
+            remedy: "pass an array with one entry per coordinate, in the order of `gyroflex info`".to_string(),
+        }
+    }
+}
