@@ -2,9 +2,13 @@
 
 pub mod dynamics;
 pub mod error;
+pub mod eval;
+pub mod info;
+pub mod load;
 pub mod record;
 pub mod robot;
 
 pub use dynamics::Dynamics;
 pub use error::{Error, ErrorKind};
+pub use gyroflex::model::Fidelity;
 pub use robot::Robot;
