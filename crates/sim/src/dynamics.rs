@@ -1,16 +1,16 @@
-//! The core's algorithms with storage of their own: one object per thread, nothing allocated after its making.
+//! A model together with the scratch its algorithms need: allocated once, nothing per call.
 
 use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
 use gyroflex::dynamics::{
-    AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, Power, RneaScratch,
-    State, coupling, crba, energy, forward_dynamics, matrix_len, placements, power, reflected_inertia, rnea,
+    self, AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, Power,
+    RneaScratch, State,
 };
 use gyroflex::integrate::{self, StateMut};
 use gyroflex::model::{Model, SizeError};
 use gyroflex::spatial::{Motion, Transform, Vec3};
 
-/// A model and scratch for every algorithm.
+/// The algorithms of the core over one model, with storage of their own.
 #[derive(Clone, Debug)]
 pub struct Dynamics {
     model: OwnedModel,
@@ -19,21 +19,27 @@ pub struct Dynamics {
     rnea: Vec<RneaScratch<f64>>,
     crba: Vec<CrbaScratch<f64>>,
     moving: Vec<(Transform<f64>, Motion<f64>)>,
+    poses: Vec<Transform<f64>>,
+    twists: Vec<Motion<f64>>,
     work: Vec<f64>,
 }
 
 impl Dynamics {
-    /// Storage for one model.
+    /// Takes the model and allocates for it.
     pub fn new(model: OwnedModel) -> Self {
         let view = model.view();
         let n = view.bodies().len();
+        let work = integrate::rk4_len(&view).max(integrate::euler_len(&view));
+        let matrix = dynamics::matrix_len(&view);
         Self {
             aba: vec![AbaScratch::new(); n],
-            matrix: vec![0.0; matrix_len(&view)],
+            matrix: vec![0.0; matrix],
             rnea: vec![RneaScratch::new(); n],
             crba: vec![CrbaScratch::new(); n],
             moving: vec![(Transform::identity(), Motion::zero()); n],
-            work: vec![0.0; integrate::rk4_len(&view).max(integrate::euler_len(&view))],
+            poses: vec![Transform::identity(); n],
+            twists: vec![Motion::zero(); n],
+            work: vec![0.0; work],
             model,
         }
     }
@@ -48,109 +54,134 @@ impl Dynamics {
         self.model.set_gravity(gravity);
     }
 
-    /// See [`forward_dynamics`].
+    /// The model and what it was lowered as.
+    pub fn owned_model(&self) -> &OwnedModel {
+        &self.model
+    }
+
+    /// Length of `q`.
+    pub fn nq(&self) -> usize {
+        self.model().nq()
+    }
+
+    /// Length of every other vector over the joints.
+    pub fn nv(&self) -> usize {
+        self.model().nv()
+    }
+
+    /// Accelerations and transmission torques; see [`dynamics::forward_dynamics`].
     ///
     /// # Errors
-    /// A slice of the wrong length.
+    /// A slice that does not fit the model.
     pub fn forward(
         &mut self,
         state: State<f64>,
         tau: &[f64],
         ext: External<f64>,
         out: Forward<f64>,
-    ) -> Result<(), Error> {
+    ) -> Result<(), SizeError> {
         let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
-        forward_dynamics(&self.model.view(), state, tau, ext, scratch, out).map_err(Error::from)
+        dynamics::forward_dynamics(&self.model.view(), state, tau, ext, scratch, out)
     }
 
-    /// See [`rnea`].
+    /// Torques that make the robot accelerate as asked; see [`dynamics::rnea`].
     ///
     /// # Errors
-    /// A slice of the wrong length.
+    /// A slice that does not fit the model.
     pub fn inverse(
         &mut self,
         state: State<f64>,
         accel: Acceleration<f64>,
         ext: External<f64>,
         out: Inverse<f64>,
-    ) -> Result<(), Error> {
-        rnea(&self.model.view(), state, accel, ext, &mut self.rnea, out).map_err(Error::from)
+    ) -> Result<(), SizeError> {
+        dynamics::rnea(&self.model.view(), state, accel, ext, &mut self.rnea, out)
     }
 
-    /// See [`crba`].
+    /// `M_l(q)`, `nv × nv` by rows; see [`dynamics::crba`].
     ///
     /// # Errors
-    /// A slice of the wrong length.
-    pub fn mass_matrix(&mut self, q: &[f64], m: &mut [f64]) -> Result<(), Error> {
-        crba(&self.model.view(), q, &mut self.crba, m).map_err(Error::from)
+    /// A slice that does not fit the model.
+    pub fn mass_matrix(&mut self, q: &[f64], m: &mut [f64]) -> Result<(), SizeError> {
+        dynamics::crba(&self.model.view(), q, &mut self.crba, m)
     }
 
-    /// See [`coupling`].
+    /// `S(q)`, `nv × nv` by rows; see [`dynamics::coupling`].
     ///
     /// # Errors
-    /// A slice of the wrong length.
-    pub fn coupling(&mut self, q: &[f64], s: &mut [f64]) -> Result<(), Error> {
-        coupling(&self.model.view(), q, &mut self.crba, s).map_err(Error::from)
+    /// A slice that does not fit the model.
+    pub fn coupling(&mut self, q: &[f64], s: &mut [f64]) -> Result<(), SizeError> {
+        dynamics::coupling(&self.model.view(), q, &mut self.crba, s)
     }
 
-    /// See [`reflected_inertia`].
+    /// Diagonal of `B`, `nv` entries; see [`dynamics::reflected_inertia`].
     ///
     /// # Errors
-    /// A slice of the wrong length.
-    pub fn reflected_inertia(&self, b: &mut [f64]) -> Result<(), Error> {
-        reflected_inertia(&self.model.view(), b).map_err(Error::from)
+    /// A slice that does not fit the model.
+    pub fn reflected_inertia(&self, b: &mut [f64]) -> Result<(), SizeError> {
+        dynamics::reflected_inertia(&self.model.view(), b)
     }
 
-    /// See [`energy`].
+    /// Kinetic, gravity and elastic energy [J].
     ///
     /// # Errors
-    /// A slice of the wrong length.
-    pub fn energy(&mut self, state: State<f64>) -> Result<Energy<f64>, Error> {
-        energy(&self.model.view(), state, &mut self.moving).map_err(Error::from)
+    /// A slice that does not fit the model.
+    pub fn energy(&mut self, state: State<f64>) -> Result<Energy<f64>, SizeError> {
+        dynamics::energy(&self.model.view(), state, &mut self.moving)
     }
 
-    /// See [`power`].
+    /// Power supplied and dissipated [W].
     ///
     /// # Errors
-    /// A slice of the wrong length.
-    pub fn power(&mut self, state: State<f64>, tau: &[f64], ext: External<f64>) -> Result<Power<f64>, Error> {
-        power(&self.model.view(), state, tau, ext, &mut self.moving).map_err(Error::from)
+    /// A slice that does not fit the model.
+    pub fn power(&mut self, state: State<f64>, tau: &[f64], ext: External<f64>) -> Result<Power<f64>, SizeError> {
+        dynamics::power(&self.model.view(), state, tau, ext, &mut self.moving)
     }
 
-    /// See [`placements`].
+    /// Transform from the world to every body's link frame.
     ///
     /// # Errors
-    /// A slice of the wrong length.
-    pub fn placements(&self, q: &[f64], out: &mut [Transform<f64>]) -> Result<(), Error> {
-        placements(&self.model.view(), q, out).map_err(Error::from)
+    /// A slice that does not fit the model.
+    pub fn placements(&mut self, q: &[f64]) -> Result<&[Transform<f64>], SizeError> {
+        dynamics::placements(&self.model.view(), q, &mut self.poses)?;
+        Ok(&self.poses)
     }
 
-    /// See [`integrate::rk4`].
+    /// Spatial velocity of every body in its link frame, angular part first.
     ///
     /// # Errors
-    /// A slice of the wrong length.
-    pub fn rk4(&mut self, state: StateMut<f64>, tau: &[f64], ext: External<f64>, step: f64) -> Result<(), Error> {
-        let model = self.model.view();
+    /// A slice that does not fit the model.
+    pub fn velocities(&mut self, q: &[f64], qd: &[f64]) -> Result<&[Motion<f64>], SizeError> {
+        dynamics::velocities(&self.model.view(), q, qd, &mut self.twists)?;
+        Ok(&self.twists)
+    }
+
+    /// One step of the classical Runge-Kutta scheme; see [`integrate::rk4`].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn rk4(&mut self, state: StateMut<f64>, tau: &[f64], ext: External<f64>, step: f64) -> Result<(), SizeError> {
+        let view = self.model.view();
         let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
-        let work = &mut self.work[..integrate::rk4_len(&model)];
-        integrate::rk4(&model, state, tau, ext, step, scratch, work).map_err(Error::from)
+        let work = &mut self.work[..integrate::rk4_len(&view)];
+        integrate::rk4(&view, state, tau, ext, step, scratch, work)
     }
 
-    /// See [`integrate::semi_implicit_euler`].
+    /// One step of semi-implicit Euler; see [`integrate::semi_implicit_euler`].
     ///
     /// # Errors
-    /// A slice of the wrong length.
+    /// A slice that does not fit the model.
     pub fn semi_implicit_euler(
         &mut self,
         state: StateMut<f64>,
         tau: &[f64],
         ext: External<f64>,
         step: f64,
-    ) -> Result<(), Error> {
-        let model = self.model.view();
+    ) -> Result<(), SizeError> {
+        let view = self.model.view();
         let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
-        let work = &mut self.work[..integrate::euler_len(&model)];
-        integrate::semi_implicit_euler(&model, state, tau, ext, step, scratch, work).map_err(Error::from)
+        let work = &mut self.work[..integrate::euler_len(&view)];
+        integrate::semi_implicit_euler(&view, state, tau, ext, step, scratch, work)
     }
 }
 
@@ -160,8 +191,8 @@ impl From<SizeError> for Error {
             kind: ErrorKind::Shape,
             file: String::new(),
             element: e.argument.to_string(),
-            problem: format!("{} entries given, but the robot needs {}", e.given, e.expected),
-            remedy: "give one entry per coordinate, in the order `gyroflex info` lists".to_string(),
+            problem: e.to_string(),
+            remedy: "pass an array with one entry per coordinate, in the order of `gyroflex info`".to_string(),
         }
     }
 }

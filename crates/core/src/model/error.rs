@@ -30,7 +30,7 @@ pub enum Defect {
     NotPositive(&'static str, f64),
     /// The link's rotational inertia about its centre of mass has a negative principal moment.
     InertiaNotPositive,
-    /// Mass zero, but a moment of mass or a rotational inertia is not.
+    /// Mass zero, but the first moment of mass is not.
     MasslessInertia,
     /// Nothing beyond this joint resists its motion: every force would accelerate it without bound.
     NothingToMove,
@@ -72,7 +72,7 @@ impl fmt::Display for Defect {
             Self::InertiaNotPositive => {
                 f.write_str("the inertia about the centre of mass has a negative principal moment")
             }
-            Self::MasslessInertia => f.write_str("the mass is zero but the inertia or the moment of mass is not"),
+            Self::MasslessInertia => f.write_str("the mass is zero but the first moment of mass is not"),
             Self::NothingToMove => f.write_str(
                 "no mass or inertia beyond this joint resists its motion; give the links it moves a mass, or fix the joint",
             ),

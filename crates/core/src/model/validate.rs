@@ -6,8 +6,10 @@ use crate::spatial::{Mat3, SpatialInertia, SymMat3, Transform, Vec3};
 
 /// How far a unit vector or a rotation matrix may be from one.
 const UNIT_TOLERANCE: f64 = 1e-6;
-/// Negative principal moments up to this part of the trace are rounding of the file.
-const INERTIA_TOLERANCE: f64 = 1e-9;
+/// Negative principal moments up to this part of the trace are rounding of the file ...
+const FILE_ROUNDING: f64 = 1e-9;
+/// ... and up to this part of the trace about the link frame, rounding of the shift to the centre of mass.
+const SHIFT_ROUNDING: f64 = 1e-14;
 
 impl RobotSpec<'_> {
     /// Finds the first defect of the description.
@@ -108,7 +110,8 @@ impl RobotSpec<'_> {
                 contained = true;
             }
         }
-        if contained && !is_positive_semidefinite(&rest) { Err(Defect::RotorLargerThanLink) } else { Ok(()) }
+        let rounding = FILE_ROUNDING * trace(&about_com(&self.bodies[i].inertia));
+        if contained && !is_positive_semidefinite(&rest, rounding) { Err(Defect::RotorLargerThanLink) } else { Ok(()) }
     }
 
     /// Every joint must move some mass; the last joint of a branch, some inertia about its own axis.
@@ -204,10 +207,12 @@ fn check_inertia(i: &SpatialInertia<f64>) -> Result<(), Defect> {
     check_finite("the link's centre of mass", &i.first_moment.to_array())?;
     let r = i.rotational;
     check_finite("the link's inertia", &[r.xx, r.yy, r.zz, r.xy, r.xz, r.yz])?;
-    if i.mass == 0.0 && (i.first_moment != Vec3::new(0.0, 0.0, 0.0)) {
+    if i.mass == 0.0 && i.first_moment != Vec3::new(0.0, 0.0, 0.0) {
         return Err(Defect::MasslessInertia);
     }
-    if is_positive_semidefinite(&about_com(i)) { Ok(()) } else { Err(Defect::InertiaNotPositive) }
+    let about_com = about_com(i);
+    let rounding = FILE_ROUNDING * trace(&about_com).abs() + SHIFT_ROUNDING * trace(&r).abs();
+    if is_positive_semidefinite(&about_com, rounding) { Ok(()) } else { Err(Defect::InertiaNotPositive) }
 }
 
 /// Rotational inertia about the centre of mass: `I + c× m c×`.
@@ -219,9 +224,10 @@ fn about_com(i: &SpatialInertia<f64>) -> SymMat3<f64> {
     i.rotational - SpatialInertia::from_com(i.mass, com, SymMat3::zero()).rotational
 }
 
-/// Sylvester's criterion on all principal minors, up to the rounding of a file.
-fn is_positive_semidefinite(a: &SymMat3<f64>) -> bool {
-    principal_minors(a).iter().zip(minor_scales(a)).all(|(m, s)| *m >= -INERTIA_TOLERANCE * s)
+/// Sylvester's criterion on all principal minors of `a + rounding 1`.
+fn is_positive_semidefinite(a: &SymMat3<f64>, rounding: f64) -> bool {
+    let shifted = *a + SymMat3::diagonal(rounding, rounding, rounding);
+    principal_minors(&shifted).iter().all(|m| *m >= 0.0)
 }
 
 fn is_positive_definite(a: &SymMat3<f64>) -> bool {
@@ -234,7 +240,6 @@ fn principal_minors(a: &SymMat3<f64>) -> [f64; 7] {
     [a.xx, a.yy, a.zz, a.xx * a.yy - a.xy * a.xy, a.xx * a.zz - a.xz * a.xz, a.yy * a.zz - a.yz * a.yz, det]
 }
 
-fn minor_scales(a: &SymMat3<f64>) -> [f64; 7] {
-    let t = a.xx.abs() + a.yy.abs() + a.zz.abs();
-    [t, t, t, t * t, t * t, t * t, t * t * t]
+fn trace(a: &SymMat3<f64>) -> f64 {
+    a.xx + a.yy + a.zz
 }
