@@ -27,6 +27,7 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    #[allow(dead_code)]
     Simulate(Simulate),
     Info(Info),
     Eval(Eval),

@@ -40,6 +40,9 @@ fn answer(mut evaluator: Evaluator, mut input: impl BufRead, name: &str) -> Resu
         let here = || format!("{name}:{number}");
         bytes.clear();
         input.by_ref().take(MAX_LINE).read_until(b'\n', &mut bytes).map_err(|e| unreadable(here(), &e))?;
+        if bytes.len() as u64 == MAX_LINE {
+            return Err(unreadable(here(), &format!("the line is longer than {MAX_LINE} bytes")).into());
+        }
         if bytes.is_empty() {
             break;
         }
