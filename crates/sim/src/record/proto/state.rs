@@ -1,0 +1,139 @@
+//! `gyroflex.State`: all that is particular to flexible joints and geared motors.
+
+use super::foxglove::{Quaternion, Vector3};
+use super::message;
+use crate::record::{RunInfo, Sample};
+
+message! { "gyroflex" "gyroflex/Joint.proto"
+    /// One joint at one instant. Motor quantities are reflected to the link side.
+    /// Units are those of a turning joint; of a sliding one they are m, m/s, m/s^2 and N.
+    Joint {
+        1 name: [string] String, "Name of the joint in the URDF";
+        2 prismatic: [bool] bool, "Whether the joint slides";
+        3 q: [double] f64, "Link position [rad]";
+        4 qd: [double] f64, "Link velocity [rad/s]";
+        5 qdd: [double] f64, "Link acceleration [rad/s^2]";
+        6 theta: [double] f64, "Motor position [rad]; q where no elastic transmission is";
+        7 thetad: [double] f64, "Motor velocity [rad/s]";
+        8 thetadd: [double] f64, "Motor acceleration [rad/s^2]";
+        9 deflection: [double] f64, "Deflection of the transmission [rad]";
+        10 tau_j: [double] f64, "Torque through the transmission [N m]";
+        11 tau: [double] f64, "Torque of the motor [N m]";
+        12 gyroscopic: [double] f64, "Torque on the link that the rotors' coupling causes [N m]";
+        13 friction: [double] f64, "Friction of both sides [N m]";
+        14 reference: [double] f64, "Reference position [rad]";
+        15 tracking_error: [double] f64, "Reference minus link position [rad]";
+    }
+}
+
+message! { "gyroflex" "gyroflex/Base.proto"
+    /// A floating root: its pose in the world, its twist in its own frame.
+    Base {
+        1 position: [message, optional] Option<Vector3>, "Origin of the root frame in the world [m]";
+        2 orientation: [message, optional] Option<Quaternion>, "Rotation from the root frame to the world";
+        3 angular_velocity: [message, optional] Option<Vector3>, "Angular velocity, root axes [rad/s]";
+        4 linear_velocity: [message, optional] Option<Vector3>, "Velocity of the root's origin, root axes [m/s]";
+    }
+}
+
+message! { "gyroflex" "gyroflex/State.proto"
+    /// The state of a robot with flexible joints at one instant.
+    State {
+        1 time: [double] f64, "Simulated time [s]";
+        2 joints: [message, repeated] Vec<Joint>, "Joints of one degree of freedom, in coordinate order";
+        3 kinetic_energy: [double] f64, "Kinetic energy of links and rotors [J]";
+        4 gravity_energy: [double] f64, "Potential energy of gravity [J]";
+        5 elastic_energy: [double] f64, "Energy stored in the transmissions [J]";
+        6 power_in: [double] f64, "Power put in by motors and external loads [W]";
+        7 dissipation: [double] f64, "Power lost in friction and damping, not negative [W]";
+        8 significance: [double] f64, "Significance ratio of the gyroscopic coupling, Zhao et al. 2015, eq. 12 [-]";
+        9 base: [message, optional] Option<Base>, "Floating root; absent on a fixed one";
+    }
+}
+
+impl State {
+    /// The state of a sample that belongs to the run.
+    pub(crate) fn new(info: &RunInfo, s: &Sample) -> Self {
+        let joint = |i: usize| Joint {
+            name: info.joints[i].clone(),
+            prismatic: info.prismatic[i],
+            q: s.q[i],
+            qd: s.qd[i],
+            qdd: s.qdd[i],
+            theta: s.theta[i],
+            thetad: s.thetad[i],
+            thetadd: s.thetadd[i],
+            deflection: s.deflection[i],
+            tau_j: s.tau_j[i],
+            tau: s.tau[i],
+            gyroscopic: s.gyroscopic[i],
+            friction: s.friction[i],
+            reference: s.reference[i],
+            tracking_error: s.tracking_error[i],
+        };
+        Self {
+            time: s.t,
+            joints: (0..info.joints.len()).map(joint).collect(),
+            kinetic_energy: s.kinetic_energy,
+            gravity_energy: s.gravity_energy,
+            elastic_energy: s.elastic_energy,
+            power_in: s.power_in,
+            dissipation: s.dissipation,
+            significance: s.significance,
+            base: s.base_pose.zip(s.base_twist).map(|(pose, twist)| Base::new(pose, twist)),
+        }
+    }
+
+    /// The sample again, without the poses of the links.
+    pub(crate) fn sample(&self) -> Sample {
+        let all = |get: fn(&Joint) -> f64| self.joints.iter().map(get).collect();
+        Sample {
+            t: self.time,
+            base_pose: self.base.as_ref().map(Base::pose),
+            base_twist: self.base.as_ref().map(Base::twist),
+            q: all(|j| j.q),
+            qd: all(|j| j.qd),
+            qdd: all(|j| j.qdd),
+            theta: all(|j| j.theta),
+            thetad: all(|j| j.thetad),
+            thetadd: all(|j| j.thetadd),
+            deflection: all(|j| j.deflection),
+            tau_j: all(|j| j.tau_j),
+            tau: all(|j| j.tau),
+            gyroscopic: all(|j| j.gyroscopic),
+            friction: all(|j| j.friction),
+            reference: all(|j| j.reference),
+            tracking_error: all(|j| j.tracking_error),
+            kinetic_energy: self.kinetic_energy,
+            gravity_energy: self.gravity_energy,
+            elastic_energy: self.elastic_energy,
+            power_in: self.power_in,
+            dissipation: self.dissipation,
+            significance: self.significance,
+            frames: Vec::new(),
+        }
+    }
+}
+
+impl Base {
+    fn new([x, y, z, qx, qy, qz, qw]: [f64; 7], [wx, wy, wz, vx, vy, vz]: [f64; 6]) -> Self {
+        Self {
+            position: Some(Vector3 { x, y, z }),
+            orientation: Some(Quaternion { x: qx, y: qy, z: qz, w: qw }),
+            angular_velocity: Some(Vector3 { x: wx, y: wy, z: wz }),
+            linear_velocity: Some(Vector3 { x: vx, y: vy, z: vz }),
+        }
+    }
+
+    fn pose(&self) -> [f64; 7] {
+        let p = self.position.clone().unwrap_or_default();
+        let o = self.orientation.clone().unwrap_or_default();
+        [p.x, p.y, p.z, o.x, o.y, o.z, o.w]
+    }
+
+    fn twist(&self) -> [f64; 6] {
+        let w = self.angular_velocity.clone().unwrap_or_default();
+        let v = self.linear_velocity.clone().unwrap_or_default();
+        [w.x, w.y, w.z, v.x, v.y, v.z]
+    }
+}

@@ -1,0 +1,123 @@
+//! One instant of a run, and the check every recorder makes before it takes one.
+
+use super::RunInfo;
+use super::columns::{PER_JOINT, WHOLE};
+use crate::error::{Error, ErrorKind};
+use gyroflex::spatial::Transform;
+
+/// One instant. Vectors run over [`RunInfo::joints`]; torques and motor positions are reflected to the link side.
+#[derive(Clone, Debug, Default)]
+pub struct Sample {
+    /// Simulated time [s].
+    pub t: f64,
+    /// Pose of a floating root `x y z qx qy qz qw` in the world.
+    pub base_pose: Option<[f64; 7]>,
+    /// Twist of a floating root in its own frame, angular part first.
+    pub base_twist: Option<[f64; 6]>,
+    /// Link positions [rad or m].
+    pub q: Vec<f64>,
+    /// Link velocities.
+    pub qd: Vec<f64>,
+    /// Link accelerations.
+    pub qdd: Vec<f64>,
+    /// Reflected motor positions `θ` [rad or m]; `q` where there is no elastic transmission.
+    pub theta: Vec<f64>,
+    /// Reflected motor velocities.
+    pub thetad: Vec<f64>,
+    /// Reflected motor accelerations.
+    pub thetadd: Vec<f64>,
+    /// Transmission deflection `δ` [rad or m].
+    pub deflection: Vec<f64>,
+    /// Torque through the transmission `τ_J` [N m or N].
+    pub tau_j: Vec<f64>,
+    /// Motor torque `τ` [N m or N].
+    pub tau: Vec<f64>,
+    /// Torque on each link joint that the rotors' coupling causes, `S θ̈ + C₁ θ̇` [N m or N].
+    pub gyroscopic: Vec<f64>,
+    /// Friction on both sides, reflected [N m or N].
+    pub friction: Vec<f64>,
+    /// Reference position [rad or m].
+    pub reference: Vec<f64>,
+    /// Reference minus link position [rad or m].
+    pub tracking_error: Vec<f64>,
+    /// Kinetic energy of links and rotors [J].
+    pub kinetic_energy: f64,
+    /// Potential energy of gravity [J].
+    pub gravity_energy: f64,
+    /// Energy stored in the transmissions [J].
+    pub elastic_energy: f64,
+    /// Power put in by the motors and external loads [W].
+    pub power_in: f64,
+    /// Power lost in friction and damping [W], ≥ 0.
+    pub dissipation: f64,
+    /// Significance ratio `r_s` of the gyroscopic coupling (Zhao et al. 2015, eq. 12); NaN-free: zero at rest.
+    pub significance: f64,
+    /// Pose of every link frame relative to its parent frame, in the order of [`RunInfo::frames`].
+    pub frames: Vec<Transform<f64>>,
+}
+
+/// ROS 2 counts seconds in an `int32`.
+const LAST_TIME: f64 = i32::MAX as f64;
+
+impl Sample {
+    /// Checks the sample against the run it belongs to: lengths, finite numbers, and a time that does not run back
+    /// behind `previous` [s].
+    ///
+    /// # Errors
+    /// Names the quantity, the joint and the time.
+    pub fn check(&self, info: &RunInfo, previous: Option<f64>) -> Result<(), Error> {
+        if !(0.0..LAST_TIME).contains(&self.t) {
+            return Err(shape("time", format!("{} s is not a time a log can hold", self.t)));
+        }
+        if let Some(previous) = previous.filter(|&p| p > self.t) {
+            return Err(shape("time", format!("runs back from {previous} s to {} s", self.t)));
+        }
+        for quantity in PER_JOINT {
+            let values = (quantity.get)(self);
+            if values.len() != info.joints.len() {
+                let problem = format!("{} values for {} joints", values.len(), info.joints.len());
+                return Err(shape(quantity.key, problem));
+            }
+            for (joint, &value) in info.joints.iter().zip(values) {
+                self.finite(format_args!("{} of joint `{joint}`", quantity.key), &[value])?;
+            }
+        }
+        for quantity in WHOLE {
+            self.finite(format_args!("{}", quantity.key), &[(quantity.get)(self)])?;
+        }
+        if self.base_pose.is_some() != info.floating || self.base_twist.is_some() != info.floating {
+            return Err(shape("base", "a floating root, and no other, has a pose and a twist".to_owned()));
+        }
+        self.finite(format_args!("pose of the floating root"), &self.base_pose.unwrap_or_default())?;
+        self.finite(format_args!("twist of the floating root"), &self.base_twist.unwrap_or_default())?;
+        if self.frames.len() != info.frames.len() {
+            return Err(shape("frames", format!("{} poses for {} links", self.frames.len(), info.frames.len())));
+        }
+        for ((link, _), frame) in info.frames.iter().zip(&self.frames) {
+            let [a, b, c] = frame.rot.rows;
+            for v in [frame.pos, a, b, c] {
+                self.finite(format_args!("pose of link `{link}`"), &[v.x, v.y, v.z])?;
+            }
+        }
+        Ok(())
+    }
+
+    fn finite(&self, what: std::fmt::Arguments<'_>, values: &[f64]) -> Result<(), Error> {
+        match values.iter().find(|v| !v.is_finite()) {
+            None => Ok(()),
+            Some(value) => Err(Error {
+                kind: ErrorKind::Diverged,
+                file: String::new(),
+                element: what.to_string(),
+                problem: format!("is {value} at t = {} s", self.t),
+                remedy: "the record holds the run up to here; use a smaller step or a stiff integrator".to_owned(),
+            }),
+        }
+    }
+}
+
+fn shape(element: &str, problem: String) -> Error {
+    let (file, remedy) =
+        (String::new(), "give every sample the joints and links of its run, in order of time".to_owned());
+    Error { kind: ErrorKind::Shape, file, element: element.to_owned(), problem, remedy }
+}
