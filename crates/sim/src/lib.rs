@@ -2,6 +2,7 @@
 
 pub mod dynamics;
 pub mod error;
+pub mod load;
 pub mod record;
 pub mod robot;
 

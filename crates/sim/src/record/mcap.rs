@@ -49,6 +49,9 @@ impl Default for ChunkLimits {
     }
 }
 
+/// Opcode, length, channel, sequence and two times before the data of a message [bytes].
+const RECORD_HEADER: usize = 31;
+
 /// Writes samples to an MCAP log.
 pub struct McapRecorder<W: Write = File> {
     name: String,
@@ -138,7 +141,7 @@ impl<W: Write> McapRecorder<W> {
             self.chunk_opened = Instant::now();
         }
         let header = MessageHeader { channel_id, sequence: self.sequence, log_time: time, publish_time: time };
-        self.chunk_bytes += data.len();
+        self.chunk_bytes += RECORD_HEADER + data.len();
         writer.write_to_known_channel(&header, data)
     }
 
