@@ -27,7 +27,10 @@ pub(crate) fn inertia(
             remedy: remedy.to_owned(),
         };
         if mass < 0.0 {
-            return Err(fault(format!("its mass is negative: {mass} kg"), "give its mass, or 0 for a frame without mass"));
+            return Err(fault(
+                format!("its mass is negative: {mass} kg"),
+                "give its mass, or 0 for a frame without mass",
+            ));
         }
         let [least, middle, most] = principal_moments(&about_com);
         if least < -ROUNDING * most.abs() {
