@@ -1,11 +1,25 @@
 //! From files to motion: URDF and YAML in, simulation, records out.
 
+pub mod controller;
+pub mod coordinates;
 pub mod dynamics;
+pub mod equilibrium;
 pub mod error;
+pub mod eval;
+pub mod info;
 pub mod load;
+pub mod loads;
+pub mod modes;
+mod ode;
 pub mod record;
+pub mod reference;
 pub mod robot;
+pub mod scenario;
+pub mod simulate;
 
 pub use dynamics::Dynamics;
 pub use error::{Error, ErrorKind};
+pub use gyroflex::model::Fidelity;
 pub use robot::Robot;
+pub use scenario::{Scenario, ScenarioFile, scenario_schema};
+pub use simulate::{Simulation, Summary};

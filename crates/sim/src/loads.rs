@@ -1,0 +1,121 @@
+//! External wrenches of a scenario, turned into wrenches on bodies.
+
+use crate::dynamics::Dynamics;
+use crate::error::Error;
+use crate::load::nearest::nearest;
+use crate::load::yaml::Keys;
+use crate::robot::Robot;
+use crate::scenario::{Wrench, WrenchFrame, fault};
+use gyroflex::dynamics::External;
+use gyroflex::model::SizeError;
+use gyroflex::spatial::{Force, Transform, Vec3};
+
+/// One wrench of the scenario, on its body.
+#[derive(Clone, Copy, Debug)]
+struct Load {
+    body: usize,
+    /// Where it acts, in the body's link frame [m].
+    point: Vec3<f64>,
+    /// Force and couple: in the axes of the body's link frame, or of the world.
+    force: Vec3<f64>,
+    torque: Vec3<f64>,
+    frame: WrenchFrame,
+    start: f64,
+    end: f64,
+    active: bool,
+}
+
+/// All wrenches of a scenario, and what they amount to on each body.
+#[derive(Clone, Debug)]
+pub struct Loads {
+    loads: Vec<Load>,
+    wrenches: Vec<Force<f64>>,
+}
+
+impl Loads {
+    /// The wrenches of a scenario.
+    ///
+    /// # Errors
+    /// Links that the robot does not have, or that do not move.
+    pub fn new(wrenches: &[Wrench], robot: &Robot, keys: &Keys) -> Result<Self, Error> {
+        let mut loads = Vec::with_capacity(wrenches.len());
+        for (i, wrench) in wrenches.iter().enumerate() {
+            let key = format!("wrenches[{i}].link");
+            let Some(link) = robot.links.iter().find(|l| l.name == wrench.link) else {
+                let remedy = match nearest(&wrench.link, robot.links.iter().map(|l| l.name.as_str())) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => "remove it".to_owned(),
+                };
+                return Err(fault(keys, &key, format!("the robot has no link `{}`", wrench.link), remedy));
+            };
+            let Some(body) = link.body else {
+                let problem = format!("link `{}` is fixed to the world: a wrench on it does nothing", wrench.link);
+                return Err(fault(keys, &key, problem, "name a link that moves, or remove the wrench"));
+            };
+            // Link axes become axes of the body's link frame once and for all.
+            let turn = |v: [f64; 3]| match wrench.frame {
+                WrenchFrame::World => Vec3::from(v),
+                WrenchFrame::Link => link.placement.rotation() * Vec3::from(v),
+            };
+            loads.push(Load {
+                body,
+                point: link.placement.point(Vec3::from(wrench.point)),
+                force: turn(wrench.force),
+                torque: turn(wrench.torque),
+                frame: wrench.frame,
+                start: wrench.start,
+                end: wrench.end.unwrap_or(f64::INFINITY),
+                active: false,
+            });
+        }
+        let bodies = if loads.is_empty() { 0 } else { robot.bodies.len() };
+        Ok(Self { loads, wrenches: vec![Force::zero(); bodies] })
+    }
+
+    /// Whether there are none at all.
+    pub fn is_empty(&self) -> bool {
+        self.loads.is_empty()
+    }
+
+    /// Times at which a wrench starts or ends [s].
+    pub fn edges(&self) -> impl Iterator<Item = f64> {
+        self.loads.iter().flat_map(|l| [l.start, l.end]).filter(|t| t.is_finite())
+    }
+
+    /// Keeps the wrenches of time `t`: from their start on, up to their end.
+    pub fn set_time(&mut self, t: f64) {
+        for load in &mut self.loads {
+            load.active = load.start <= t && t < load.end;
+        }
+    }
+
+    /// Turns them to the pose `q`.
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn update(&mut self, dynamics: &mut Dynamics, q: &[f64]) -> Result<(), SizeError> {
+        if self.loads.is_empty() {
+            return Ok(());
+        }
+        self.apply(dynamics.placements(q)?);
+        Ok(())
+    }
+
+    fn apply(&mut self, placements: &[Transform<f64>]) {
+        self.wrenches.fill(Force::zero());
+        for load in self.loads.iter().filter(|l| l.active) {
+            let turn = |v: Vec3<f64>| match load.frame {
+                WrenchFrame::World => placements[load.body].rot * v,
+                WrenchFrame::Link => v,
+            };
+            let (force, torque) = (turn(load.force), turn(load.torque));
+            // About the origin of the link frame: the couple, and the moment of the force.
+            self.wrenches[load.body] += Force { ang: torque + load.point.cross(force), lin: force };
+        }
+    }
+
+    /// What they are now, for the algorithms.
+    pub fn external(&self) -> External<'_, f64> {
+        External { tau: &[], wrenches: &self.wrenches }
+    }
+}

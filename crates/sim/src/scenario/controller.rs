@@ -1,0 +1,86 @@
+//! Controllers as a scenario names them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What drives the motors. Torques are held between the ticks of the controller and limited to each drive's `max_torque`.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Controller {
+    /// Nothing: motor torques are zero.
+    None {},
+    /// PD on the motor side, on `theta`: `tau = g(q_ref) + kp (theta_ref − theta) + kd (thetad_ref − thetad)` with
+    /// `theta_ref = q_ref + K⁻¹ g(q_ref)`.
+    Pd {
+        /// Ticks a second [Hz].
+        #[serde(default = "default_rate")]
+        rate: f64,
+        /// Position gains [N m/rad or N/m].
+        kp: Gains,
+        /// Velocity gains [N m s/rad or N s/m].
+        kd: Gains,
+        /// Whether gravity at the reference is fed forward, as torque and as deflection; without it `theta_ref = q_ref`.
+        #[serde(default = "yes")]
+        gravity_compensation: bool,
+    },
+    /// Inverse dynamics of the rigid robot, fed with motor positions less the static deflection:
+    /// `tau = M (qdd_ref + kp (theta_ref − theta) + kd (thetad_ref − thetad)) + C + g + friction`.
+    ComputedTorque {
+        /// Ticks a second [Hz].
+        #[serde(default = "default_rate")]
+        rate: f64,
+        /// Position gains [1/s²].
+        kp: Gains,
+        /// Velocity gains [1/s].
+        kd: Gains,
+        /// The model the controller inverts.
+        #[serde(default)]
+        model: RigidModel,
+    },
+}
+
+impl Default for Controller {
+    fn default() -> Self {
+        Self::None {}
+    }
+}
+
+impl Controller {
+    /// Ticks a second [Hz]; `None` without a controller.
+    pub fn rate(&self) -> Option<f64> {
+        match self {
+            Self::None {} => None,
+            Self::Pd { rate, .. } | Self::ComputedTorque { rate, .. } => Some(*rate),
+        }
+    }
+}
+
+/// A gain: one number for all joints, or a map from joint names, where `default` stands for the joints not named.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, or a map from joint names (and `default`) to numbers")]
+pub enum Gains {
+    /// The same for all joints.
+    All(f64),
+    /// By joint name.
+    Named(BTreeMap<String, f64>),
+}
+
+/// The rigid model that a computed torque controller inverts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RigidModel {
+    /// With the full gyroscopics of the rotors.
+    #[default]
+    Rigid,
+    /// With reflected rotor inertia on the diagonal only.
+    RigidReflected,
+}
+
+fn default_rate() -> f64 {
+    1000.0
+}
+
+fn yes() -> bool {
+    true
+}

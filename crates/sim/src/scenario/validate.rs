@@ -1,0 +1,144 @@
+//! What can be wrong with a scenario before any robot is loaded.
+
+use super::{Controller, Gains, Initial, Integrator, JointReference, JointValues, Scenario, Wrench, fault};
+use crate::error::Error;
+use crate::load::yaml::Keys;
+
+impl Scenario {
+    /// Checks every number: finite, and positive where it must be. `keys` are the places of the file's keys.
+    ///
+    /// # Errors
+    /// Names the first key whose value makes no sense.
+    pub fn validate(&self, keys: &Keys) -> Result<(), Error> {
+        let check = Check { keys };
+        check.positive("duration", self.duration)?;
+        check.finite("gravity", self.gravity.iter().flatten())?;
+        check.positive("log.rate", self.log.rate)?;
+        check.initial(&self.initial)?;
+        for (name, reference) in &self.reference.joints {
+            check.reference(&format!("reference.{name}"), reference)?;
+        }
+        check.controller(&self.controller)?;
+        for (i, wrench) in self.wrenches.iter().enumerate() {
+            check.wrench(&format!("wrenches[{i}]"), wrench)?;
+        }
+        check.integrator(&self.integrator)
+    }
+}
+
+/// Checks of one file.
+struct Check<'a> {
+    keys: &'a Keys,
+}
+
+impl Check<'_> {
+    fn fail(&self, key: &str, problem: String, remedy: &str) -> Result<(), Error> {
+        Err(fault(self.keys, key, problem, remedy))
+    }
+
+    fn finite<'a>(&self, key: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<(), Error> {
+        match values.into_iter().find(|v| !v.is_finite()) {
+            Some(v) => self.fail(key, format!("{v} is not a finite number"), "give a finite number"),
+            None => Ok(()),
+        }
+    }
+
+    fn positive(&self, key: &str, value: f64) -> Result<(), Error> {
+        if value.is_finite() && value > 0.0 {
+            return Ok(());
+        }
+        self.fail(key, format!("{value} is not a positive number"), "give a number above zero")
+    }
+
+    fn not_negative(&self, key: &str, value: f64) -> Result<(), Error> {
+        if value.is_finite() && value >= 0.0 {
+            return Ok(());
+        }
+        self.fail(key, format!("{value} is negative or not finite"), "give zero or a number above it")
+    }
+
+    fn joint_values(&self, key: &str, values: &JointValues) -> Result<(), Error> {
+        match values {
+            JointValues::Named(map) => {
+                map.iter().try_for_each(|(name, value)| self.finite(&format!("{key}.{name}"), [value]))
+            }
+            JointValues::Ordered(list) => self.finite(key, list),
+        }
+    }
+
+    fn initial(&self, initial: &Initial) -> Result<(), Error> {
+        self.joint_values("initial.q", &initial.q)?;
+        self.joint_values("initial.qd", &initial.qd)?;
+        self.joint_values("initial.theta", &initial.theta)?;
+        self.joint_values("initial.thetad", &initial.thetad)?;
+        if let Some(base) = &initial.base {
+            self.finite("initial.base.xyz", &base.xyz)?;
+            self.finite("initial.base.rpy", &base.rpy)?;
+            self.finite("initial.base.twist", &base.twist)?;
+        }
+        Ok(())
+    }
+
+    fn reference(&self, key: &str, reference: &JointReference) -> Result<(), Error> {
+        match reference {
+            JointReference::Hold { at } => self.finite(key, at.iter()),
+            JointReference::Sine { amplitude, frequency, phase, offset } => {
+                self.finite(key, [amplitude, frequency, phase, offset])
+            }
+            JointReference::Sines { offset, terms } => {
+                self.finite(key, [offset])?;
+                terms.iter().try_for_each(|t| self.finite(key, [&t.amplitude, &t.frequency, &t.phase]))
+            }
+            JointReference::Zhao { amplitude, omega, offset } => {
+                self.positive(&format!("{key}.amplitude"), *amplitude)?;
+                self.positive(&format!("{key}.omega"), *omega)?;
+                self.finite(key, [offset])
+            }
+            JointReference::Quintic { from, to, start, duration } => {
+                self.finite(key, [from, to, start])?;
+                self.positive(&format!("{key}.duration"), *duration)
+            }
+        }
+    }
+
+    fn controller(&self, controller: &Controller) -> Result<(), Error> {
+        match controller {
+            Controller::None {} => Ok(()),
+            Controller::Pd { rate, kp, kd, .. } | Controller::ComputedTorque { rate, kp, kd, .. } => {
+                self.positive("controller.rate", *rate)?;
+                self.gains("controller.kp", kp)?;
+                self.gains("controller.kd", kd)
+            }
+        }
+    }
+
+    fn gains(&self, key: &str, gains: &Gains) -> Result<(), Error> {
+        match gains {
+            Gains::All(value) => self.not_negative(key, *value),
+            Gains::Named(map) => map.iter().try_for_each(|(n, v)| self.not_negative(&format!("{key}.{n}"), *v)),
+        }
+    }
+
+    fn wrench(&self, key: &str, wrench: &Wrench) -> Result<(), Error> {
+        let numbers = wrench.force.iter().chain(&wrench.torque).chain(&wrench.point).chain([&wrench.start]);
+        self.finite(key, numbers)?;
+        let Some(end) = wrench.end else { return Ok(()) };
+        if end > wrench.start {
+            return Ok(());
+        }
+        let problem = format!("it ends at {end} s, but starts at {} s", wrench.start);
+        self.fail(&format!("{key}.end"), problem, "let it end after it starts, or leave `end` out for never")
+    }
+
+    fn integrator(&self, integrator: &Integrator) -> Result<(), Error> {
+        match *integrator {
+            Integrator::SemiImplicitEuler { step } | Integrator::Rk4 { step } => self.positive("integrator.step", step),
+            Integrator::Dopri5 { rtol, atol }
+            | Integrator::Dop853 { rtol, atol }
+            | Integrator::Kvaerno5 { rtol, atol } => {
+                self.positive("integrator.rtol", rtol)?;
+                self.positive("integrator.atol", atol)
+            }
+        }
+    }
+}

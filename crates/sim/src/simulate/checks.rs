@@ -1,0 +1,130 @@
+//! What is found out about a run before it starts, and whether it left the sane world on its way.
+
+use super::Simulation;
+use crate::error::{Error, ErrorKind, Warning};
+use crate::scenario::fault;
+
+/// Beyond this speed [rad/s or m/s] or position [rad or m] a run is taken to have diverged.
+const MAX_SPEED: f64 = 1e6;
+const MAX_POSITION: f64 = 1e9;
+
+impl Simulation {
+    /// Refuses a fixed step at which the scheme is unstable.
+    pub(super) fn check_step(&self) -> Result<(), Error> {
+        let scenario = &self.file.scenario;
+        let (Some(step), Some(largest)) =
+            (scenario.integrator.fixed_step(), self.modes.largest_step(&scenario.integrator))
+        else {
+            return Ok(());
+        };
+        // Steps never reach beyond the next tick.
+        let tick = scenario.controller.rate().unwrap_or(0.0).max(scenario.log.rate);
+        if step.min(1.0 / tick) <= largest {
+            return Ok(());
+        }
+        let mut causes = Vec::new();
+        if let Some(mode) = self.modes.fastest() {
+            causes.push(format!("its fastest mode is {:.4e} Hz at joint `{}`", mode.frequency, mode.joint));
+        }
+        if let Some(decay) = &self.modes.decay {
+            let text = "its fastest decay by damping and friction at standstill is";
+            causes.push(format!("{text} {:.4e} 1/s at joint `{}`", decay.rate, decay.joint));
+        }
+        let problem = format!(
+            "a step of {step:e} s makes `{}` unstable on this robot: {}",
+            scenario.integrator.name(),
+            causes.join(", and ")
+        );
+        // Rounded down, so that the number given works.
+        let scale = 10f64.powi(largest.log10().floor() as i32 - 2);
+        let usable = (largest / scale).floor() * scale;
+        let remedy = format!("the largest usable step is {usable:.2e} s; or use the stiff method `kvaerno5`");
+        Err(fault(&self.file.keys, "integrator.step", problem, remedy))
+    }
+
+    /// Warns of a sampled velocity loop that is unstable on a motor by itself: `kd / B` beyond twice the rate.
+    pub(super) fn check_controller(&mut self) {
+        let Some(rate) = self.file.scenario.controller.rate() else { return };
+        for (i, joint) in self.joints.joints.iter().enumerate() {
+            let model = self.dynamics.model();
+            let body = &model.bodies()[joint.body];
+            let Some(drive) = body.drive().filter(|_| body.is_elastic()) else { continue };
+            let damping = self.control.damping_rate(i, drive.rotor.reflected_inertia);
+            if damping >= 2.0 * rate {
+                self.warnings.push(Warning {
+                    file: self.file.keys.locate("controller.kd"),
+                    element: format!("controller.kd of joint `{}`", joint.name),
+                    message: format!(
+                        "the motor answers at {damping:.3e} 1/s, which a controller at {rate} Hz cannot hold stable; lower \
+                         `kd` or raise `rate`"
+                    ),
+                });
+            }
+        }
+    }
+
+    /// Warns of wrenches that never act.
+    pub(super) fn check_wrenches(&mut self) {
+        let duration = self.file.scenario.duration;
+        for (i, wrench) in self.file.scenario.wrenches.iter().enumerate() {
+            let ended = wrench.end.is_some_and(|end| end <= 0.0);
+            let idle = wrench.force.iter().chain(&wrench.torque).all(|x| *x == 0.0);
+            if ended || wrench.start >= duration || idle {
+                self.warnings.push(Warning {
+                    file: self.file.keys.locate(&format!("wrenches[{i}]")),
+                    element: format!("wrenches[{i}]"),
+                    message: "it never acts: it is zero, or outside of the run's time".to_owned(),
+                });
+            }
+        }
+    }
+
+    /// Whether all numbers of the state are finite and sane.
+    ///
+    /// # Errors
+    /// Names the joint and the time.
+    pub(super) fn check_state(&self, t: f64) -> Result<(), Error> {
+        let state = &self.state;
+        let insane = |x: f64, bound: f64| x.is_nan() || x.abs() > bound;
+        for joint in &self.joints.joints {
+            let (q, k) = (joint.q, joint.v);
+            let quantities = [
+                ("position", state.q[q], MAX_POSITION),
+                ("velocity", state.qd[k], MAX_SPEED),
+                ("motor position", state.theta[k], MAX_POSITION),
+                ("motor velocity", state.thetad[k], MAX_SPEED),
+            ];
+            if let Some((name, value, _)) = quantities.into_iter().find(|(_, x, bound)| insane(*x, *bound)) {
+                return Err(self.diverged(&joint.name, t, &format!("its {name} is {value:e}")));
+            }
+        }
+        if self.joints.floating {
+            let (pose, twist) = (&state.q[..7], &state.qd[..6]);
+            if pose.iter().any(|x| insane(*x, MAX_POSITION)) || twist.iter().any(|x| insane(*x, MAX_SPEED)) {
+                return Err(self.diverged("root", t, "its pose or twist left all bounds"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The joint that moves fastest, to name one where a scheme gives up.
+    pub(super) fn fastest_joint(&self) -> &str {
+        let speed = |v: usize| self.state.qd[v].abs().max(self.state.thetad[v].abs());
+        let joints = self.joints.joints.iter();
+        joints.max_by(|a, b| speed(a.v).total_cmp(&speed(b.v))).map_or("root", |j| j.name.as_str())
+    }
+
+    /// The error of a run that left the finite numbers.
+    pub(super) fn diverged(&self, joint: &str, t: f64, what: &str) -> Error {
+        Error {
+            kind: ErrorKind::Diverged,
+            file: self.file.path.display().to_string(),
+            element: format!("joint `{joint}`"),
+            problem: format!("the simulation diverged at t = {t} s: {what}"),
+            remedy:
+                "use a smaller step or the stiff method `kvaerno5`, and check gains, stiffnesses and inertias; the log \
+                     holds the run up to there"
+                    .to_owned(),
+        }
+    }
+}

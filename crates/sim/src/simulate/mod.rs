@@ -1,0 +1,163 @@
+//! A scenario come alive: everything is checked and set up first, then it runs from instant to instant.
+
+mod checks;
+mod clock;
+mod run;
+mod sampler;
+mod start;
+mod summary;
+
+pub use start::StateVec;
+pub use summary::{JointSummary, Summary};
+
+use crate::controller::Control;
+use crate::coordinates::Coordinates;
+use crate::dynamics::Dynamics;
+use crate::error::{Error, Warning};
+use crate::loads::Loads;
+use crate::modes::{self, Modes};
+use crate::ode::Adaptive;
+use crate::record::RunInfo;
+use crate::reference::{Point, Trajectory, references};
+use crate::robot::Robot;
+use crate::scenario::{Integrator, ScenarioFile};
+use gyroflex::spatial::Vec3;
+use sampler::Sampler;
+
+/// A run that is ready to start, or has been run.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    robot: Robot,
+    file: ScenarioFile,
+    joints: Coordinates,
+    dynamics: Dynamics,
+    references: Vec<Trajectory>,
+    points: Vec<Point>,
+    control: Control,
+    loads: Loads,
+    sampler: Sampler,
+    adaptive: Option<Adaptive>,
+    modes: Modes,
+    initial: StateVec,
+    state: StateVec,
+    tau: Vec<f64>,
+    half_step: Vec<f64>,
+    halfway: Vec<f64>,
+    warnings: Vec<Warning>,
+}
+
+impl Simulation {
+    /// Sets up a run of `file` with `robot`, which the scenario's own model and gravity override, and refuses it if it cannot
+    /// go well.
+    ///
+    /// # Errors
+    /// Everything in the scenario that does not fit the robot, and a step too large for the robot's fastest mode.
+    pub fn new(robot: &Robot, file: &ScenarioFile) -> Result<Self, Error> {
+        let scenario = &file.scenario;
+        let mut robot = robot.clone();
+        if let Some(gravity) = scenario.gravity {
+            robot.gravity = Vec3::from(gravity);
+        }
+        if let Some(model) = scenario.model {
+            robot.fidelity = model.into();
+        }
+        let mut warnings = Vec::new();
+        let joints = Coordinates::of(&robot);
+        let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
+        let q0 = joints.spread(&scenario.initial.q, &file.keys, "initial.q")?;
+        let references = references(file, &joints, &q0, &mut warnings)?;
+        let mut loads = Loads::new(&scenario.wrenches, &robot, &file.keys)?;
+        let control = Control::new(&scenario.controller, &robot, &joints, &file.keys)?;
+        let initial = start::initial_state(file, &joints, &references, &mut dynamics, &mut loads)?;
+        let modes = modes::modes(&mut dynamics, &joints, &initial.q, &initial.theta)?;
+        let sampler = Sampler::new(&robot, &joints, &dynamics)?;
+        let adaptive = scenario.integrator.fixed_step().is_none().then(|| Adaptive::new(&dynamics));
+        let mut simulation = Self {
+            points: vec![Point::default(); joints.len()],
+            state: initial.clone(),
+            tau: vec![0.0; dynamics.nv()],
+            half_step: vec![0.0; dynamics.nv()],
+            halfway: vec![0.0; dynamics.nq()],
+            file: file.clone(),
+            robot,
+            joints,
+            dynamics,
+            references,
+            control,
+            loads,
+            sampler,
+            adaptive,
+            modes,
+            initial,
+            warnings,
+        };
+        simulation.check_step()?;
+        simulation.check_controller();
+        simulation.check_wrenches();
+        Ok(simulation)
+    }
+
+    /// The robot as it is simulated: with the scenario's model and gravity.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// The joints of one degree of freedom, in the order of every vector that is logged.
+    pub fn coordinates(&self) -> &Coordinates {
+        &self.joints
+    }
+
+    /// Natural modes and decay at the initial pose.
+    pub fn modes(&self) -> &Modes {
+        &self.modes
+    }
+
+    /// The state at time 0.
+    pub fn initial_state(&self) -> &StateVec {
+        &self.initial
+    }
+
+    /// The state the last run came to; before any, the initial state.
+    pub fn state(&self) -> &StateVec {
+        &self.state
+    }
+
+    /// What the user should know, so far.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// What a recorder must know before the first sample.
+    pub fn run_info(&self) -> RunInfo {
+        let mut info = RunInfo::new(&self.robot, self.robot.fidelity);
+        for source in std::iter::once(&self.file.source).chain(&self.file.csv) {
+            info.attachments.push((source.name.clone(), source.text.clone()));
+        }
+        let scenario = &self.file.scenario;
+        let mut add = |key: &str, value: String| info.metadata.push((key.to_owned(), value));
+        add("gyroflex", env!("CARGO_PKG_VERSION").to_owned());
+        add("robot", self.robot.name.clone());
+        add("scenario", self.file.source.name.clone());
+        add("model", self.robot.fidelity.name().to_owned());
+        add("gravity", format!("{:?}", self.robot.gravity.to_array()));
+        add("duration", scenario.duration.to_string());
+        add("integrator", scenario.integrator.name().to_owned());
+        match scenario.integrator {
+            Integrator::SemiImplicitEuler { step } | Integrator::Rk4 { step } => add("step", step.to_string()),
+            Integrator::Dopri5 { rtol, atol }
+            | Integrator::Dop853 { rtol, atol }
+            | Integrator::Kvaerno5 { rtol, atol } => {
+                add("rtol", rtol.to_string());
+                add("atol", atol.to_string());
+            }
+        }
+        if let Some(rate) = scenario.controller.rate() {
+            add("control_rate", rate.to_string());
+        }
+        add("log_rate", scenario.log.rate.to_string());
+        if let Some(mode) = self.modes.fastest() {
+            add("fastest_mode_hz", mode.frequency.to_string());
+        }
+        info
+    }
+}

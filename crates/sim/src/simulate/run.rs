@@ -1,0 +1,181 @@
+//! From instant to instant.
+
+use super::clock::{Clock, Instant};
+use super::summary::{Summary, Tally};
+use super::{Simulation, StateVec};
+use crate::error::{Error, Warning};
+use crate::record::Recorder;
+use crate::scenario::Integrator;
+use gyroflex::integrate::integrate;
+use std::ops::ControlFlow;
+use std::time::Instant as WallClock;
+
+/// How far a run came.
+struct Progress {
+    t: f64,
+    steps: u64,
+    interrupted: bool,
+    tally: Tally,
+    /// Joints whose limits were already reported.
+    beyond: Vec<bool>,
+}
+
+impl Simulation {
+    /// Number of samples an uninterrupted run records, give or take the one at its end.
+    pub fn expected_samples(&self) -> u64 {
+        self.clock().samples()
+    }
+
+    /// Runs the scenario from its start. After every instant, `progress` is told the simulated time [s] and may stop the run.
+    /// The recorder is completed in any case: at the end, on a stop, on a diverging run, on any error.
+    ///
+    /// # Errors
+    /// A run that diverged, with joint and time, or a recorder that failed.
+    pub fn run(
+        &mut self,
+        recorder: &mut dyn Recorder,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Summary, Error> {
+        let started = WallClock::now();
+        let result = self.instants(recorder, progress);
+        let finished = recorder.finish();
+        let done = result?;
+        finished?;
+        let wall_time = started.elapsed().as_secs_f64();
+        let scenario = &self.file.scenario;
+        Ok(Summary {
+            robot: self.robot.name.clone(),
+            model: self.robot.fidelity.name(),
+            integrator: scenario.integrator.name(),
+            duration: scenario.duration,
+            end_time: done.t,
+            interrupted: done.interrupted,
+            samples: done.tally.samples,
+            steps: done.steps,
+            wall_time,
+            real_time_factor: done.t / wall_time.max(f64::MIN_POSITIVE),
+            fastest_mode: self.modes.fastest().cloned(),
+            largest_step: self.modes.largest_step(&scenario.integrator),
+            energy_drift: done.tally.energy_drift(),
+            joints: done.tally.joints(&self.joints, &self.control),
+            warnings: self.warnings.iter().map(Warning::to_string).collect(),
+        })
+    }
+
+    fn clock(&self) -> Clock {
+        let scenario = &self.file.scenario;
+        Clock::new(scenario.controller.rate(), scenario.log.rate, self.loads.edges(), scenario.duration)
+    }
+
+    fn instants(
+        &mut self,
+        recorder: &mut dyn Recorder,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Progress, Error> {
+        self.state.clone_from(&self.initial);
+        self.tau.fill(0.0);
+        self.control.reset();
+        let n = self.joints.len();
+        let mut done = Progress { t: 0.0, steps: 0, interrupted: false, tally: Tally::new(n), beyond: vec![false; n] };
+        for instant in self.clock() {
+            if instant.t > done.t {
+                self.loads.set_time(done.t);
+                done.steps += self.advance(done.t, instant.t - done.t)?;
+                self.check_state(instant.t)?;
+            }
+            done.t = instant.t;
+            self.at(instant, recorder, &mut done)?;
+            if progress(instant.t).is_break() && !instant.end {
+                done.interrupted = true;
+                break;
+            }
+        }
+        Ok(done)
+    }
+
+    /// What is due at an instant: the controller first, so that the sample shows the torques from here on.
+    fn at(&mut self, instant: Instant, recorder: &mut dyn Recorder, done: &mut Progress) -> Result<(), Error> {
+        if !instant.control && !instant.log {
+            return Ok(());
+        }
+        for (point, reference) in self.points.iter_mut().zip(&self.references) {
+            *point = reference.at(instant.t);
+        }
+        if instant.control {
+            self.control.tick(&mut self.dynamics, &self.points, self.state.view(), &mut self.tau)?;
+        }
+        if !instant.log {
+            return Ok(());
+        }
+        self.loads.set_time(instant.t);
+        let (sampler, state) = (&mut self.sampler, self.state.view());
+        sampler.take(instant.t, &mut self.dynamics, state, &self.tau, &mut self.loads, &self.points)?;
+        done.tally.add(&sampler.sample);
+        recorder.record(&sampler.sample)?;
+        self.watch_limits(instant.t, &mut done.beyond);
+        Ok(())
+    }
+
+    /// Integrates over `length` seconds from time `t` under held motor torques; returns the number of steps.
+    fn advance(&mut self, t: f64, length: f64) -> Result<u64, Error> {
+        let scheme = self.file.scenario.integrator;
+        if let Some(adaptive) = &mut self.adaptive {
+            let state = self.state.view_mut();
+            return adaptive
+                .advance(&scheme, &mut self.dynamics, &mut self.loads, state, &self.tau, length)
+                .map_err(|stuck| self.diverged(self.fastest_joint(), t + stuck.at, stuck.why));
+        }
+        let step = scheme.fixed_step().unwrap_or(length);
+        // As few equal steps as are not longer than asked for, up to rounding.
+        let steps = (length / step * (1.0 - 1e-9)).ceil().max(1.0);
+        let h = length / steps;
+        for _ in 0..steps as u64 {
+            self.turn_loads(h)?;
+            let (state, ext) = (self.state.view_mut(), self.loads.external());
+            match scheme {
+                Integrator::SemiImplicitEuler { .. } => {
+                    self.dynamics.semi_implicit_euler(state, &self.tau, ext, h)?;
+                }
+                _ => self.dynamics.rk4(state, &self.tau, ext, h)?,
+            }
+        }
+        Ok(steps as u64)
+    }
+
+    /// Loads are held over a fixed step in the axes of their links; taking them half-way keeps the error at second order.
+    fn turn_loads(&mut self, h: f64) -> Result<(), Error> {
+        if self.loads.is_empty() {
+            return Ok(());
+        }
+        let StateVec { q, qd, .. } = &self.state;
+        for (half, v) in self.half_step.iter_mut().zip(qd) {
+            *half = 0.5 * h * v;
+        }
+        integrate(&self.dynamics.model(), q, &self.half_step, &mut self.halfway)?;
+        self.loads.update(&mut self.dynamics, &self.halfway)?;
+        Ok(())
+    }
+
+    /// Limits of position and speed do not act on the motion; the user learns when one is passed for the first time.
+    fn watch_limits(&mut self, t: f64, beyond: &mut [bool]) {
+        for (i, joint) in self.joints.joints.iter().enumerate() {
+            if beyond[i] {
+                continue;
+            }
+            let (limits, q, qd) = (&self.robot.joints[joint.body], self.state.q[joint.q], self.state.qd[joint.v]);
+            let outside = limits.limits.filter(|[low, high]| q < *low || q > *high);
+            let too_fast = limits.max_velocity.filter(|max| qd.abs() > *max);
+            let message = match (outside, too_fast) {
+                (Some([low, high]), _) => format!("at t = {t} s its position {q:.6} leaves {low} to {high}"),
+                (None, Some(max)) => format!("at t = {t} s its speed {:.6} exceeds {max}", qd.abs()),
+                (None, None) => continue,
+            };
+            beyond[i] = true;
+            self.warnings.push(Warning {
+                file: self.robot.sources.first().map_or_else(String::new, |s| s.name.clone()),
+                element: format!("joint `{}`", joint.name),
+                message: format!("{message}; the simulation has no end stops and goes on"),
+            });
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! The state a scenario starts from.
+
+use crate::coordinates::Coordinates;
+use crate::dynamics::Dynamics;
+use crate::equilibrium::Equilibrium;
+use crate::error::Error;
+use crate::loads::Loads;
+use crate::reference::Trajectory;
+use crate::scenario::{ScenarioFile, fault};
+use gyroflex::dynamics::State;
+use gyroflex::integrate::StateMut;
+
+/// A state in storage of its own; lengths as in [`State`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateVec {
+    /// Joint positions, `nq` entries.
+    pub q: Vec<f64>,
+    /// Joint velocities, `nv` entries.
+    pub qd: Vec<f64>,
+    /// Reflected motor positions, `nv` entries.
+    pub theta: Vec<f64>,
+    /// Reflected motor velocities, `nv` entries.
+    pub thetad: Vec<f64>,
+}
+
+impl StateVec {
+    /// A state of zeros.
+    pub fn zeros(nq: usize, nv: usize) -> Self {
+        Self { q: vec![0.0; nq], qd: vec![0.0; nv], theta: vec![0.0; nv], thetad: vec![0.0; nv] }
+    }
+
+    /// For algorithms that read it.
+    pub fn view(&self) -> State<'_, f64> {
+        State { q: &self.q, qd: &self.qd, theta: &self.theta, thetad: &self.thetad }
+    }
+
+    /// For algorithms that change it.
+    pub fn view_mut(&mut self) -> StateMut<'_, f64> {
+        StateMut { q: &mut self.q, qd: &mut self.qd, theta: &mut self.theta, thetad: &mut self.thetad }
+    }
+}
+
+/// The initial state: what the scenario gives, and for the rest the reference at time 0 and static equilibrium.
+pub(super) fn initial_state(
+    file: &ScenarioFile,
+    joints: &Coordinates,
+    references: &[Trajectory],
+    dynamics: &mut Dynamics,
+    loads: &mut Loads,
+) -> Result<StateVec, Error> {
+    let (initial, keys) = (&file.scenario.initial, &file.keys);
+    let mut state = StateVec::zeros(dynamics.nq(), dynamics.nv());
+    match (&initial.base, joints.floating) {
+        (Some(_), false) => {
+            let problem = "the robot's root is fixed";
+            return Err(fault(keys, "initial.base", problem, "remove it, or load the robot with a floating root"));
+        }
+        (base, true) => {
+            let base = base.clone().unwrap_or_default();
+            state.q[..3].copy_from_slice(&base.xyz);
+            state.q[3..7].copy_from_slice(&quaternion(base.rpy));
+            state.qd[..6].copy_from_slice(&base.twist);
+        }
+        (None, false) => {}
+    }
+    let q = joints.spread(&initial.q, keys, "initial.q")?;
+    let qd = joints.spread(&initial.qd, keys, "initial.qd")?;
+    let theta = joints.spread(&initial.theta, keys, "initial.theta")?;
+    let thetad = joints.spread(&initial.thetad, keys, "initial.thetad")?;
+    for (i, joint) in joints.joints.iter().enumerate() {
+        let start = references[i].at(0.0);
+        state.q[joint.q] = q[i].unwrap_or(start.q);
+        state.qd[joint.v] = qd[i].unwrap_or(start.qd);
+        state.thetad[joint.v] = state.qd[joint.v];
+    }
+
+    loads.set_time(0.0);
+    loads.update(dynamics, &state.q)?;
+    let mut tau = vec![0.0; dynamics.nv()];
+    let mut equilibrium = Equilibrium::new(dynamics.nv());
+    equilibrium.solve(dynamics, &state.q, loads.external(), &mut state.theta, &mut tau)?;
+    for (i, joint) in joints.joints.iter().enumerate() {
+        let elastic = dynamics.model().bodies()[joint.body].is_elastic();
+        for (given, slot, key) in [(theta[i], &mut state.theta, "theta"), (thetad[i], &mut state.thetad, "thetad")] {
+            let Some(value) = given else { continue };
+            if !elastic {
+                let problem = format!("joint `{}` has no elastic transmission in this model", joint.name);
+                let remedy = "remove it: the motor turns with the joint";
+                return Err(fault(keys, &format!("initial.{key}.{}", joint.name), problem, remedy));
+            }
+            slot[joint.v] = value;
+        }
+    }
+    Ok(state)
+}
+
+/// The unit quaternion `x y z w` of roll, pitch and yaw about fixed axes, as in URDF.
+fn quaternion([roll, pitch, yaw]: [f64; 3]) -> [f64; 4] {
+    let ((sr, cr), (sp, cp), (sy, cy)) = ((roll / 2.0).sin_cos(), (pitch / 2.0).sin_cos(), (yaw / 2.0).sin_cos());
+    [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy]
+}
