@@ -134,13 +134,7 @@ impl OwnedModel {
 impl Robot {
     /// Names the joint behind an error of the core.
     fn model_error(&self, e: gyroflex::model::ModelError) -> Error {
-        let joint = self.joints.get(e.body);
-        Error {
-            kind: crate::ErrorKind::Model,
-            file: self.sources.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", "),
-            element: joint.map_or_else(String::new, |j| format!("joint `{}` (link `{}`)", j.name, j.child_link)),
-            problem: e.defect.to_string(),
-            remedy: String::new(),
-        }
+        let files: Vec<&str> = self.sources.iter().map(|s| s.name.as_str()).collect();
+        crate::load::defect::explain(&e, self, files.join(", "))
     }
 }

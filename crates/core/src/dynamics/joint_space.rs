@@ -62,7 +62,10 @@ pub fn forward_in_joint_space<T: Scalar>(
             }
             continue;
         }
-        qdd[k] = s.u - along_joint(body, s.pa);
+        // A rigid rotor's own row: N J n·α, α what its carrier's velocity alone makes of it.
+        let carrier = body.drive.as_ref().and_then(|d| d.rotor.mount());
+        let at_carrier = carrier.map_or(Vec3::zero(), |m| scratch[m].a.ang);
+        qdd[k] = s.u - along_joint(body, s.pa) - rigid_coupling(body).ang.dot(at_carrier);
         inertia_column(model, scratch, i, matrix);
     }
 

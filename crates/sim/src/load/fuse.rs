@@ -1,6 +1,6 @@
 //! Links that are rigidly connected become one body.
 
-use super::inertial::inertia;
+use super::inertial;
 use super::tree::{JointElement, Tree};
 use super::{LoadOptions, Mimic};
 use crate::error::{Error, ErrorKind, Warning};
@@ -33,28 +33,28 @@ pub(crate) fn fuse(tree: &Tree, options: &LoadOptions, warnings: &mut Vec<Warnin
     let mut open = vec![tree.root];
     while let Some(index) = open.pop() {
         let link = &tree.links[index];
+        if let Some(joint_index) = link.parent_joint.filter(|j| tree.joints[*j].moves()) {
+            let joint = &tree.joints[joint_index];
+            let kind = joint_kind(tree, joint, options, warnings)?;
+            let (parent, placement) = places[index];
+            places[index] = (Some(out.bodies.len()), Transform::identity());
+            out.joints.push(Some(joint_index));
+            out.bodies.push(body(parent, kind, joint.axis, placement));
+        }
         let (carrier, place) = places[index];
-        let own = inertia(link, carrier.is_some(), warnings)?;
         if let Some(carrier) = carrier {
             let sum = &mut out.bodies[carrier].inertia;
-            *sum = *sum + own.seen_from_parent(place);
+            *sum = *sum + inertial::inertia(link).seen_from_parent(place);
         }
         for joint_index in &link.child_joints {
             let joint = &tree.joints[*joint_index];
-            places[joint.child].1 = joint.origin.after(place);
-            places[joint.child].0 = carrier;
+            places[joint.child] = (carrier, joint.origin.after(place));
         }
         open.extend(link.child_joints.iter().rev().map(|j| tree.joints[*j].child));
-        // A moving joint starts a body when its link is taken up, so that bodies come depth first.
-        if let Some(next) = open.last() {
-            if let Some(joint_index) = tree.links[*next].parent_joint.filter(|j| tree.joints[*j].moves()) {
-                let joint = &tree.joints[joint_index];
-                let kind = joint_kind(tree, joint, options, warnings)?;
-                let (parent, placement) = places[*next];
-                places[*next] = (Some(out.bodies.len()), Transform::identity());
-                out.joints.push(Some(joint_index));
-                out.bodies.push(body(parent, kind, joint.axis, placement));
-            }
+    }
+    for (link, (carrier, _)) in tree.links.iter().zip(&places) {
+        if let Some(carrier) = carrier {
+            inertial::check(link, &out.bodies[*carrier].inertia, warnings)?;
         }
     }
     for joint in tree.joints.iter().filter(|j| !j.moves()) {
@@ -96,7 +96,9 @@ fn joint_kind(
             let child = &tree.links[joint.child].name;
             return Err(fault(
                 "a joint of type `floating` inside the tree is not supported".to_owned(),
-                format!("take the joint and its parent out, so that `{child}` is the root, and load with a floating root"),
+                format!(
+                    "take the joint and its parent out, so that `{child}` is the root, and load with a floating root"
+                ),
             ));
         }
         JointType::Floating | JointType::Planar | JointType::Spherical => {
@@ -129,5 +131,13 @@ fn joint_kind(
 }
 
 fn body(parent: Option<usize>, joint: JointKind, axis: Vec3<f64>, placement: Transform<f64>) -> BodySpec {
-    BodySpec { parent, joint, axis, placement, inertia: SpatialInertia::zero(), friction: Friction::none(), drive: None }
+    BodySpec {
+        parent,
+        joint,
+        axis,
+        placement,
+        inertia: SpatialInertia::zero(),
+        friction: Friction::none(),
+        drive: None,
+    }
 }

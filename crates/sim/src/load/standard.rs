@@ -38,7 +38,11 @@ fn copy_link(xml: &Xml<'_>, link: Node<'_, '_>, out: &mut String) -> Result<(), 
     if let Some(inertial) = child(link, "inertial") {
         let part = |name: &'static str| {
             child(inertial, name).ok_or_else(|| {
-                xml.error(inertial, format!("<inertial> has no <{name}>"), format!("add <{name}>, or take <inertial> out"))
+                xml.error(
+                    inertial,
+                    format!("<inertial> has no <{name}>"),
+                    format!("add <{name}>, or take <inertial> out"),
+                )
             })
         };
         let (mass, inertia) = (part("mass")?, part("inertia")?);
@@ -73,9 +77,8 @@ fn copy_joint(xml: &Xml<'_>, joint: Node<'_, '_>, out: &mut String) -> Result<()
     out.push('>');
     copy_origin(xml, joint, out)?;
     for end in ["parent", "child"] {
-        let node = child(joint, end).ok_or_else(|| {
-            xml.error(joint, format!("it has no <{end}>"), format!("add <{end} link=\"…\"/>"))
-        })?;
+        let node = child(joint, end)
+            .ok_or_else(|| xml.error(joint, format!("it has no <{end}>"), format!("add <{end} link=\"…\"/>")))?;
         let _ = write!(out, "<{end}");
         attributes(out, &[("link", Some(xml.attribute(node, "link")?))]);
         out.push_str("/>");

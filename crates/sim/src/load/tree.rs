@@ -95,20 +95,33 @@ pub(crate) fn read(xml: &Xml<'_>) -> Result<Tree, Error> {
             by_name.get(name).copied().ok_or_else(|| {
                 let near = nearest(name, links.iter().map(|l| l.name.as_str()));
                 let near = near.map_or_else(String::new, |n| format!("; the nearest one is `{n}`"));
-                xml.error(node, format!("its {which} link `{name}` is not in the file"), format!("name a link of the file{near}"))
+                xml.error(
+                    node,
+                    format!("its {which} link `{name}` is not in the file"),
+                    format!("name a link of the file{near}"),
+                )
             })
         };
         let (parent, child_link) = (end(&joint.parent.link, "parent")?, end(&joint.child.link, "child")?);
         let index = joints.len();
         if let Some(other) = links[child_link].parent_joint {
-            let problem =
-                format!("link `{}` already hangs on joint `{}`", links[child_link].name, joints[other].name);
-            return Err(xml.error(node, problem, "a link has one parent: closed loops are not supported, cut the loop at one joint"));
+            let problem = format!("link `{}` already hangs on joint `{}`", links[child_link].name, joints[other].name);
+            return Err(xml.error(
+                node,
+                problem,
+                "a link has one parent: closed loops are not supported, cut the loop at one joint",
+            ));
         }
-        let axis_node = child(node, "axis");
-        let axis = direction(joint.axis.xyz.0).ok_or_else(|| {
-            xml.error(axis_node.unwrap_or(node), "the joint axis is zero", "give the direction of the axis, such as <axis xyz=\"0 0 1\"/>")
-        })?;
+        // Files often give fixed joints an axis of zero; it means nothing there.
+        let axis = match direction(joint.axis.xyz.0) {
+            Some(axis) => axis,
+            None if joint.joint_type == JointType::Fixed => Vec3::new(1.0, 0.0, 0.0),
+            None => {
+                let (node, remedy) =
+                    (child(node, "axis").unwrap_or(node), "give its direction, such as <axis xyz=\"0 0 1\"/>");
+                return Err(xml.error(node, "the joint axis is zero", remedy));
+            }
+        };
         links[child_link].parent_joint = Some(index);
         links[parent].child_joints.push(index);
         joints.push(JointElement {
@@ -135,10 +148,17 @@ fn find_root(xml: &Xml<'_>, links: &[LinkElement], joints: &[JointElement]) -> R
     let robot = xml.root();
     let (root, more) = match roots.as_slice() {
         [] if links.is_empty() => {
-            return Err(xml.error(robot, "it has no links", "give the URDF of a robot; an unexpanded xacro file has none"));
+            return Err(xml.error(
+                robot,
+                "it has no links",
+                "give the URDF of a robot; an unexpanded xacro file has none",
+            ));
         }
         [] => {
-            let (problem, remedy) = ("every link has a parent: the joints form a loop", "cut the loop at one joint, so that one link is the root");
+            let (problem, remedy) = (
+                "every link has a parent: the joints form a loop",
+                "cut the loop at one joint, so that one link is the root",
+            );
             return Err(xml.error(robot, problem, remedy));
         }
         [root, more @ ..] => (*root, more),
@@ -148,7 +168,10 @@ fn find_root(xml: &Xml<'_>, links: &[LinkElement], joints: &[JointElement]) -> R
         let others = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
         let mut error = xml.error(
             robot,
-            format!("links `{}` ({}) and `{}` ({}){others} have no parent: the robot is in pieces", a.name, a.at, b.name, b.at),
+            format!(
+                "links `{}` ({}) and `{}` ({}){others} have no parent: the robot is in pieces",
+                a.name, a.at, b.name, b.at
+            ),
             format!("connect them, for instance by a fixed joint from `{}` to `{}`", a.name, b.name),
         );
         error.file.clone_from(&b.at);

@@ -21,7 +21,7 @@ pub(crate) struct XmlText {
 
 impl XmlText {
     /// Takes leading blanks away and declares prefixes that are used undeclared, as files for Drake or Gazebo often do.
-    pub(crate) fn new(text: &str, file: &str) -> Result<Self, Error> {
+    pub(crate) fn new(text: &str, file: &str) -> Self {
         let start = text.trim_start_matches('\u{feff}').trim_start();
         let skipped = text.len() - start.len();
         let skipped_lines = text[..skipped].matches('\n').count() as u32;
@@ -35,7 +35,7 @@ impl XmlText {
                 _ => break,
             }
         }
-        Ok(this)
+        this
     }
 
     /// Parses the text.
@@ -69,7 +69,7 @@ impl XmlText {
     }
 }
 
-fn parsing() -> ParsingOptions<'static> {
+fn parsing<'input>() -> ParsingOptions<'input> {
     ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() }
 }
 
@@ -220,7 +220,8 @@ pub(crate) fn child<'n, 'i>(node: Node<'n, 'i>, name: &'static str) -> Option<No
 /// The element a user looks for: the joint, link or transmission a node belongs to, else its tag.
 fn describe(node: Node<'_, '_>) -> String {
     let named = node.ancestors().find(|n| {
-        matches!(n.tag_name().name(), "joint" | "link" | "transmission") && n.parent().is_some_and(|p| p.has_tag_name("robot"))
+        matches!(n.tag_name().name(), "joint" | "link" | "transmission")
+            && n.parent().is_some_and(|p| p.has_tag_name("robot"))
     });
     match named {
         Some(n) => format!("{} `{}`", n.tag_name().name(), n.attribute("name").unwrap_or("")),

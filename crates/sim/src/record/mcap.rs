@@ -49,6 +49,9 @@ impl Default for ChunkLimits {
     }
 }
 
+/// Opcode, length, channel, sequence and two times before the data of a message [bytes].
+const RECORD_HEADER: usize = 31;
+
 /// Writes samples to an MCAP log.
 pub struct McapRecorder<W: Write = File> {
     name: String,
@@ -123,8 +126,7 @@ impl<W: Write> McapRecorder<W> {
                 data: Cow::Borrowed(content.as_bytes()),
             })?;
         }
-        let mut metadata: BTreeMap<_, _> = self.info.metadata.iter().cloned().collect();
-        metadata.insert("gyroflex_sim_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
+        let metadata = self.info.metadata.iter().cloned().collect();
         writer.write_metadata(&Metadata { name: "gyroflex".to_owned(), metadata })?;
         self.channels = Channels::add(&mut writer, self.info.gear_ratios.iter().any(Option::is_some))?;
         self.writer = Some(writer);
@@ -138,7 +140,7 @@ impl<W: Write> McapRecorder<W> {
             self.chunk_opened = Instant::now();
         }
         let header = MessageHeader { channel_id, sequence: self.sequence, log_time: time, publish_time: time };
-        self.chunk_bytes += data.len();
+        self.chunk_bytes += RECORD_HEADER + data.len();
         writer.write_to_known_channel(&header, data)
     }
 

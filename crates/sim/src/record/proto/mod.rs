@@ -152,3 +152,57 @@ fn comment(path: Vec<i32>, text: &str) -> Location {
     // There is no source text for the span to point into.
     Location { path, span: vec![0, 0, 0], leading_comments: Some(text.to_owned()), ..Location::default() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn files(schema: &[u8]) -> Vec<FileDescriptorProto> {
+        FileDescriptorSet::decode(schema).unwrap().file
+    }
+
+    #[test]
+    fn schema_defines_every_message_before_it_is_used_and_only_once() {
+        for file in [files(&FrameTransforms::schema()), files(&State::schema())] {
+            let mut names: Vec<&str> = Vec::new();
+            let mut types: Vec<String> = Vec::new();
+            for f in &file {
+                assert!(f.dependency.iter().all(|d| names.contains(&d.as_str())), "{} comes too early", f.name());
+                assert!(!names.contains(&f.name()), "{} comes twice", f.name());
+                names.push(f.name());
+                let message = &f.message_type[0];
+                for field in message.field.iter().filter(|field| field.r#type() == Type::Message) {
+                    assert!(types.iter().any(|t| t == field.type_name()), "{} is unknown", field.type_name());
+                }
+                types.push(format!(".{}.{}", f.package(), message.name()));
+            }
+        }
+    }
+
+    #[test]
+    fn foxglove_messages_have_their_official_field_numbers() {
+        let official = [
+            ("Timestamp", vec![("seconds", 1), ("nanos", 2)]),
+            ("Vector3", vec![("x", 1), ("y", 2), ("z", 3)]),
+            ("Quaternion", vec![("x", 1), ("y", 2), ("z", 3), ("w", 4)]),
+            (
+                "FrameTransform",
+                vec![
+                    ("timestamp", 1),
+                    ("parent_frame_id", 2),
+                    ("child_frame_id", 3),
+                    ("translation", 4),
+                    ("rotation", 5),
+                ],
+            ),
+            ("FrameTransforms", vec![("transforms", 1)]),
+        ];
+        let file = files(&FrameTransforms::schema());
+        assert_eq!(file.len(), official.len());
+        for (f, (name, fields)) in file.iter().zip(official) {
+            let message = &f.message_type[0];
+            assert_eq!(message.name(), name);
+            assert_eq!(message.field.iter().map(|f| (f.name(), f.number())).collect::<Vec<_>>(), fields);
+        }
+    }
+}
