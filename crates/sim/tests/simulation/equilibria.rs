@@ -2,7 +2,7 @@
 
 use crate::arm::{LENGTH, REFLECTED, STIFFNESS, arm, linear, simulation, with_transmissions};
 use gyroflex::dynamics::{External, Forward, State};
-use gyroflex::model::{SpringSpec, TransmissionError};
+use gyroflex::model::{SpringSpec, TransmissionError, TransmissionSpec};
 use gyroflex::spatial::{Force, Vec3};
 use gyroflex_sim::coordinates::Coordinates;
 use gyroflex_sim::equilibrium::Equilibrium;
@@ -17,8 +17,12 @@ fn robots() -> Vec<(&'static str, Robot)> {
     let none = TransmissionError::none();
     let error = TransmissionError { amplitude: 2e-4, cycles_per_rotor_turn: 2.0, phase: 0.3 };
     let cubic = SpringSpec::Polynomial { stiffness: 800.0, cubic: 4e6 };
-    let mut table = with_transmissions(arm(3), SpringSpec::Table { first: 0, len: TABLE.len() }, 1.0, none);
-    table.spring_tables = TABLE.to_vec();
+    let mut table = arm(3);
+    for (i, body) in table.bodies.iter_mut().enumerate() {
+        let spring = SpringSpec::Table { first: i * TABLE.len(), len: TABLE.len() };
+        body.drive.as_mut().unwrap().transmission = TransmissionSpec::Elastic { spring, damping: 1.0, error: none };
+        table.spring_tables.extend(TABLE);
+    }
     vec![
         ("linear", with_transmissions(arm(3), linear(1e4), 3.0, none)),
         ("cubic", with_transmissions(arm(3), cubic, 0.0, none)),

@@ -20,8 +20,8 @@ fn apart(a: &StateVec, b: &StateVec) -> f64 {
 #[test]
 fn rk4_converges_at_fourth_order() {
     let robot = arm(3);
-    let exact = end(&robot, "{method: rk4, step: 6.25e-5}");
-    let [coarse, fine] = [2e-3, 1e-3].map(|h| apart(&end(&robot, &format!("{{method: rk4, step: {h}}}")), &exact));
+    let exact = end(&robot, "{method: rk4, step: 5e-5}");
+    let [coarse, fine] = [1e-3, 5e-4].map(|h| apart(&end(&robot, &format!("{{method: rk4, step: {h}}}")), &exact));
     let order = (coarse / fine).log2();
     assert!((order - 4.0).abs() < 0.3, "order {order}");
 }

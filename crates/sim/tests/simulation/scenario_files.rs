@@ -14,7 +14,9 @@ fn every_scenario_of_the_project_loads() {
     let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
     let mut seen = 0;
     for robot in std::fs::read_dir(robots).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()) {
-        let yaml = |p: &PathBuf| p.extension().is_some_and(|e| e == "yaml") && !p.ends_with("robot.yaml");
+        // Robots name a URDF, scenarios a robot.
+        let names_robot = |p: &PathBuf| std::fs::read_to_string(p).unwrap().lines().any(|l| l.starts_with("robot:"));
+        let yaml = |p: &PathBuf| p.extension().is_some_and(|e| e == "yaml") && names_robot(p);
         for path in std::fs::read_dir(&robot).unwrap().map(|e| e.unwrap().path()).filter(yaml) {
             let file = ScenarioFile::load(&Disk, &path).unwrap_or_else(|e| panic!("{e}"));
             assert!(file.robot_path().exists(), "{}", path.display());
