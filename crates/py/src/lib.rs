@@ -1,1 +1,26 @@
-//! Python bindings of gyroflex.
+//! The Python module `gyroflex._gyroflex`: arrays in, arrays out, no physics of its own.
+
+mod arguments;
+mod arrays;
+mod errors;
+mod robot;
+mod simulate;
+mod workspace;
+
+use pyo3::prelude::*;
+
+/// The compiled half of the package `gyroflex`; users import that.
+#[pymodule]
+mod _gyroflex {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::robot::PyRobot;
+    #[pymodule_export]
+    use crate::simulate::run_scenario;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

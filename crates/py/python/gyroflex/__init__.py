@@ -1,0 +1,43 @@
+"""Exact and fast dynamics of robots with geared, elastic drives.
+
+Units are SI. Every six-vector has its angular part first. ``theta`` and ``tau`` are motor positions and torques seen from the
+link side of the gear.
+
+>>> import numpy as np, gyroflex
+>>> robot = gyroflex.Robot.load("robots/puma560/robot.yaml")
+>>> q = theta = np.zeros(robot.nq)
+>>> still = tau = np.zeros(robot.nv)
+>>> qdd, thetadd = robot.forward_dynamics(q, still, theta, still, tau)
+"""
+
+from ._gyroflex import Robot, __version__
+from .errors import (
+    ArgumentError,
+    DivergedError,
+    Error,
+    FileError,
+    FormatError,
+    ModelError,
+    NotFiniteError,
+    RobotWarning,
+    ScenarioError,
+    ShapeError,
+)
+from .simulation import SimulationResult, simulate
+
+__all__ = [
+    "ArgumentError",
+    "DivergedError",
+    "Error",
+    "FileError",
+    "FormatError",
+    "ModelError",
+    "NotFiniteError",
+    "Robot",
+    "RobotWarning",
+    "ScenarioError",
+    "ShapeError",
+    "SimulationResult",
+    "__version__",
+    "simulate",
+]

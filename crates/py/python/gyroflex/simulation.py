@@ -1,0 +1,115 @@
+"""Simulations: a scenario in, arrays by name out."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from . import _gyroflex
+from .errors import RobotWarning
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["SimulationResult", "simulate"]
+
+
+class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
+    """What a simulation recorded: arrays by name, one row a sample, and not to be written to.
+
+    ======================================================  ====================  ==========================================
+    name                                                    shape                 meaning
+    ======================================================  ====================  ==========================================
+    ``time``                                                ``(samples,)``        simulated time [s]
+    ``q``, ``qd``, ``qdd``                                  ``(samples, joints)`` links [rad or m, per s, per s²]
+    ``theta``, ``thetad``, ``thetadd``                      ``(samples, joints)`` motors, seen from the link side
+    ``deflection``                                          ``(samples, joints)`` of the transmissions [rad or m]
+    ``tau_j``, ``tau``                                      ``(samples, joints)`` of transmissions and of motors [N m or N]
+    ``gyroscopic``, ``friction``                            ``(samples, joints)`` torques on the joints [N m or N]
+    ``reference``, ``tracking_error``                       ``(samples, joints)`` [rad or m]
+    ``kinetic_energy``, ``gravity_energy``, …               ``(samples,)``        [J]
+    ``power_in``, ``dissipation``                           ``(samples,)``        [W]
+    ``significance``                                        ``(samples,)``        of the rotors' coupling [-]
+    ``base``                                                ``(samples, 13)``     floating root: ``x y z qx qy qz qw`` in the
+                                                                                  world, twist in its own frame, angular first
+    ======================================================  ====================  ==========================================
+
+    Joints are those of ``joint_names``, the ones of one degree of freedom in coordinate order. ``units`` has the unit of each
+    column of each array.
+    """
+
+    __slots__ = ("_arrays", "joint_names", "log", "metadata", "units", "warnings")
+
+    def __init__(
+        self,
+        arrays: Mapping[str, NDArray[np.float64]],
+        units: Mapping[str, tuple[str, ...]],
+        joint_names: tuple[str, ...],
+        metadata: Mapping[str, str],
+        messages: tuple[str, ...],
+        log: str | None,
+    ) -> None:
+        self._arrays = dict(arrays)
+        for array in self._arrays.values():
+            array.setflags(write=False)
+        self.units = dict(units)
+        """Unit of each column of each array, by the array's name."""
+        self.joint_names = joint_names
+        """Names of the joints behind the columns."""
+        self.metadata = dict(metadata)
+        """Parameters and versions of the run."""
+        self.warnings = messages
+        """What was ignored or assumed, and what speaks against the step size."""
+        self.log = log
+        """Path of the MCAP log, if one was asked for."""
+
+    @property
+    def t(self) -> NDArray[np.float64]:
+        """Simulated time, shape ``(samples,)`` [s]."""
+        return self._arrays["time"]
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self._arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def __repr__(self) -> str:
+        end = f" up to {self.t[-1]:g} s" if self.t.size else ""
+        return f"<SimulationResult: {self.t.size} samples of {len(self.joint_names)} joints{end}>"
+
+
+def simulate(scenario: str | os.PathLike[str], *, log: str | os.PathLike[str] | None = None) -> SimulationResult:
+    """Runs a scenario YAML and returns what it recorded. Other threads go on meanwhile; Ctrl-C stops it.
+
+    Parameters
+    ----------
+    scenario
+        The scenario's file; the robot it names is looked for beside it.
+    log
+        Where to write an MCAP log as well. It is complete also after a run that diverged or was stopped.
+
+    Raises
+    ------
+    DivergedError
+        With joint and time; its ``result`` is what was recorded up to there.
+    ScenarioError, FormatError, ModelError, FileError
+        What is wrong with which file, before anything runs.
+
+    What was ignored or assumed is issued as ``RobotWarning`` and kept in the result's ``warnings``.
+    """
+    arrays, units, joint_names, metadata, messages, error = _gyroflex.run_scenario(scenario, log)
+    path = None if log is None else os.fspath(log)
+    result = SimulationResult(arrays, units, joint_names, metadata, tuple(messages), path)
+    for message in messages:
+        warnings.warn(message, RobotWarning, stacklevel=2)
+    if error is not None:
+        error.result = result
+        raise error
+    return result

@@ -1,0 +1,122 @@
+//! The arguments every call of a robot shares: positions, velocities, motors, forces, and the name of a model.
+
+use crate::workspace::Workspace;
+use crate::{arrays, errors};
+use gyroflex::model::Fidelity;
+use gyroflex_sim::load::{Mimic, nearest::nearest};
+use pyo3::prelude::*;
+
+/// Entries of a floating root in an array over the velocities.
+const ROOT: usize = 6;
+/// Beyond this a quaternion is a mistake, not a rounded unit quaternion.
+const QUATERNION_TOLERANCE: f64 = 1e-6;
+/// Within this a quaternion is used as it is, bit for bit: its error shows in no result.
+const QUATERNION_ROUNDING: f64 = 1e-14;
+
+const POSITIONS: &str = "give one entry per position coordinate, in the order of `joint_names`; a floating root leads with x y z qx qy qz qw";
+const VELOCITIES: &str =
+    "give one entry per velocity coordinate, in the order of `joint_names`; a floating root leads with six";
+
+/// Which entry of an array belongs to what.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Layout {
+    pub(crate) nq: usize,
+    pub(crate) nv: usize,
+    pub(crate) floating: bool,
+}
+
+impl Layout {
+    /// Joint positions; the quaternion of a floating root must be a unit quaternion and is freed of rounding to fewer digits.
+    pub(crate) fn positions(&self, value: &Bound<'_, PyAny>, q: &mut [f64]) -> PyResult<()> {
+        arrays::read("q", value, q, POSITIONS)?;
+        if !self.floating {
+            return Ok(());
+        }
+        let quaternion = &mut q[3..7];
+        let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if (norm - 1.0).abs() > QUATERNION_TOLERANCE {
+            let problem = format!("the quaternion of the root has length {norm}, not 1");
+            return Err(errors::argument("q", problem, "give a unit quaternion qx qy qz qw as entries 3 to 6"));
+        }
+        if (norm - 1.0).abs() > QUATERNION_ROUNDING {
+            quaternion.iter_mut().for_each(|x| *x /= norm);
+        }
+        Ok(())
+    }
+
+    /// Joint velocities or accelerations.
+    pub(crate) fn velocities(&self, name: &str, value: &Bound<'_, PyAny>, out: &mut [f64]) -> PyResult<()> {
+        arrays::read(name, value, out, VELOCITIES)
+    }
+
+    /// Positions and velocities of joints and motors.
+    pub(crate) fn state(
+        &self,
+        w: &mut Workspace,
+        q: &Bound<'_, PyAny>,
+        qd: &Bound<'_, PyAny>,
+        theta: Option<&Bound<'_, PyAny>>,
+        thetad: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        self.positions(q, &mut w.q)?;
+        self.velocities("qd", qd, &mut w.qd)?;
+        self.motors("theta", theta, w.elastic, &mut w.theta)?;
+        self.motors("thetad", thetad, w.elastic, &mut w.thetad)
+    }
+
+    /// An array over the motors, seen from the link side; zeros where it is neither given nor needed.
+    pub(crate) fn motors(
+        &self,
+        name: &str,
+        value: Option<&Bound<'_, PyAny>>,
+        needed: bool,
+        out: &mut [f64],
+    ) -> PyResult<()> {
+        match value {
+            Some(value) => self.forces(name, value, out),
+            None if needed => {
+                let remedy = format!("give {} numbers, or choose a model with rigid transmissions", self.nv);
+                Err(errors::argument(name, "it is missing, but the robot has elastic joints in this model", remedy))
+            }
+            None => {
+                out.fill(0.0);
+                Ok(())
+            }
+        }
+    }
+
+    /// Motor torques or generalised forces; a floating root's six may be left out.
+    pub(crate) fn forces(&self, name: &str, value: &Bound<'_, PyAny>, out: &mut [f64]) -> PyResult<()> {
+        arrays::read_without(name, value, if self.floating { ROOT } else { 0 }, out, VELOCITIES)
+    }
+
+    /// Generalised forces from outside as the algorithms take them: an empty slice for none.
+    pub(crate) fn load<'w>(&self, value: Option<&Bound<'_, PyAny>>, room: &'w mut [f64]) -> PyResult<&'w [f64]> {
+        match value {
+            Some(value) => {
+                self.forces("tau_ext", value, room)?;
+                Ok(room)
+            }
+            None => Ok(&[]),
+        }
+    }
+}
+
+/// The model of that name.
+pub(crate) fn fidelity(name: &str) -> PyResult<Fidelity> {
+    choice("model", name, &Fidelity::ALL.map(|f| (f.name(), f)))
+}
+
+/// What to do with joints that mimic another one.
+pub(crate) fn mimic(name: &str) -> PyResult<Mimic> {
+    choice("mimic", name, &[("refuse", Mimic::Refuse), ("independent", Mimic::Independent)])
+}
+
+fn choice<T: Copy>(argument: &str, name: &str, known: &[(&str, T)]) -> PyResult<T> {
+    known.iter().find(|(n, _)| *n == name).map(|(_, value)| *value).ok_or_else(|| {
+        let names: Vec<&str> = known.iter().map(|(n, _)| *n).collect();
+        let near = nearest(name, names.iter().copied()).unwrap_or_default();
+        let remedy = format!("the nearest known one is `{near}`; known: {}", names.join(", "));
+        errors::argument(argument, format!("`{name}` is not a choice"), remedy)
+    })
+}

@@ -1,0 +1,86 @@
+//! Array arguments: whatever NumPy understands as real numbers, copied once into storage of ours, checked on the way.
+
+use crate::errors;
+use numpy::{PyArray1, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+
+/// Copies a vector argument into `out`.
+///
+/// # Errors
+/// `ShapeError` if it is not a vector of that length, `NotFiniteError` if an entry is not finite, `ArgumentError` if it holds
+/// no real numbers.
+pub(crate) fn read(name: &str, value: &Bound<'_, PyAny>, out: &mut [f64], meaning: &str) -> PyResult<()> {
+    let n = out.len();
+    copy(name, value, out, |shape| {
+        errors::shape(name, format!("an array of shape {shape} is given, but ({n},) is expected"), meaning)
+    })
+}
+
+/// Like [`read`], and an array without the leading `skip` entries is welcome too: those become zero.
+pub(crate) fn read_without(
+    name: &str,
+    value: &Bound<'_, PyAny>,
+    skip: usize,
+    out: &mut [f64],
+    meaning: &str,
+) -> PyResult<()> {
+    if skip == 0 || value.len().is_ok_and(|n| n == out.len()) {
+        return read(name, value, out, meaning);
+    }
+    let n = out.len();
+    let (head, tail) = out.split_at_mut(skip);
+    head.fill(0.0);
+    copy(name, value, tail, |shape| {
+        let expected = format!("({n},), or ({},) without the root,", n - skip);
+        errors::shape(name, format!("an array of shape {shape} is given, but {expected} is expected"), meaning)
+    })
+}
+
+fn copy(name: &str, value: &Bound<'_, PyAny>, out: &mut [f64], misfit: impl Fn(String) -> PyErr) -> PyResult<()> {
+    // An array of float64 is read in place, in any memory layout; the rest NumPy converts first.
+    match value.cast::<PyArray1<f64>>() {
+        Ok(array) => copy_array(array, out, misfit)?,
+        Err(_) => copy_array(&converted(name, value, &misfit)?, out, misfit)?,
+    }
+    match out.iter().position(|x| !x.is_finite()) {
+        Some(i) => Err(errors::not_finite(name, i, out[i])),
+        None => Ok(()),
+    }
+}
+
+fn copy_array(array: &Bound<'_, PyArray1<f64>>, out: &mut [f64], misfit: impl Fn(String) -> PyErr) -> PyResult<()> {
+    if array.len() != out.len() {
+        return Err(misfit(format!("({},)", array.len())));
+    }
+    let array = array.try_readonly()?;
+    match array.as_slice() {
+        Ok(slice) => out.copy_from_slice(slice),
+        Err(_) => out.iter_mut().zip(array.as_array()).for_each(|(to, from)| *to = *from),
+    }
+    Ok(())
+}
+
+/// Lists, integers, other floats: a new vector of float64.
+fn converted<'py>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    misfit: &impl Fn(String) -> PyErr,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let py = value.py();
+    let not_numbers = |problem: String| errors::argument(name, problem, "give an array of real numbers");
+    let numpy = py.import("numpy")?;
+    let array = numpy.call_method1("asarray", (value,)).map_err(|e| not_numbers(format!("not an array: {e}")))?;
+    let array = array.cast_into::<PyUntypedArray>().map_err(|e| not_numbers(e.to_string()))?;
+    let kind = array.dtype().kind();
+    let empty = array.len() == 0;
+    if !(matches!(kind, b'f' | b'i' | b'u') || empty) {
+        let dtype = array.dtype().str().unwrap_or_else(|_| PyString::new(py, "?"));
+        return Err(not_numbers(format!("an array of {dtype} is given")));
+    }
+    if array.ndim() != 1 {
+        return Err(misfit(format!("({})", array.shape().iter().map(usize::to_string).collect::<Vec<_>>().join(", "))));
+    }
+    let array = array.call_method1("astype", (numpy::dtype::<f64>(py),))?;
+    array.cast_into::<PyArray1<f64>>().map_err(|e| not_numbers(e.to_string()))
+}

@@ -1,0 +1,322 @@
+//! `gyroflex.Robot`: the calculator of one robot.
+
+use crate::arguments::{self, Layout};
+use crate::errors;
+use crate::workspace::{Pool, Workspace};
+use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
+use gyroflex_sim::Robot;
+use gyroflex_sim::load::{LoadOptions, load};
+use gyroflex_sim::load::nearest::nearest;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+type Vector<'py> = Bound<'py, PyArray1<f64>>;
+type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+
+/// A robot with its drives, loaded from files. It never changes, and any number of threads may use it at once.
+///
+/// Arrays run over all joints in coordinate order (`joint_names`). With a floating root `q` leads with its position in the
+/// world and its unit quaternion `x y z qx qy qz qw`, and every array over the velocities with six entries of the root, in
+/// its own frame, angular first; `theta`, `thetad`, `thetadd`, `tau` and `tau_ext` may also be given without those six.
+///
+/// `theta` is the motor position seen through the gear, `q` plus the deflection of the transmission [rad or m]; `tau` the
+/// motor torque seen through the gear [N m or N]. Entries of joints without an elastic transmission are ignored in `theta`,
+/// `thetad` and `thetadd`: there the motor turns with the joint.
+///
+/// `model` is one of `complete`, `reduced`, `rigid`, `rigid_reflected`; the default is the one of the robot's file.
+#[pyclass(name = "Robot", module = "gyroflex", frozen)]
+pub(crate) struct PyRobot {
+    robot: Robot,
+    pool: Pool,
+    layout: Layout,
+}
+
+#[pymethods]
+impl PyRobot {
+    /// Loads a robot YAML or a URDF.
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The file.
+    /// floating
+    ///     Whether the root link moves freely instead of being fixed to the world.
+    /// model
+    ///     The model used unless a call says otherwise, instead of the one the file names.
+    /// mimic
+    ///     What to do with joints that mimic another one, instead of what the file says: `refuse` the robot, or let them
+    ///     move on their own, `independent` of the other.
+    ///
+    /// What of the file was ignored or assumed is issued as `RobotWarning` and kept in `warnings`.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, floating=false, model=None, mimic=None))]
+    fn load(
+        py: Python<'_>,
+        path: PathBuf,
+        floating: bool,
+        model: Option<&str>,
+        mimic: Option<&str>,
+    ) -> PyResult<Self> {
+        let model = model.map(arguments::fidelity).transpose()?;
+        let mimic = mimic.map(arguments::mimic).transpose()?;
+        let options = LoadOptions { floating, model, mimic, ..LoadOptions::default() };
+        let robot = py.detach(|| load(&path, &options)).map_err(errors::raise)?;
+        let lowered = robot.model(robot.fidelity).map_err(errors::raise)?;
+        let view = lowered.view();
+        let layout = Layout { nq: view.nq(), nv: view.nv(), floating: robot.is_floating() };
+        errors::warn(py, &robot.warnings)?;
+        Ok(Self { robot, pool: Pool::default(), layout })
+    }
+
+    /// The robot's name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.robot.name
+    }
+
+    /// Names of the joints of one degree of freedom, in coordinate order: all but a floating root.
+    #[getter]
+    fn joint_names(&self) -> Vec<&str> {
+        self.joints().map(|j| j.name.as_str()).collect()
+    }
+
+    /// Names of all links of the URDF, those fused by fixed joints included.
+    #[getter]
+    fn link_names(&self) -> Vec<&str> {
+        self.robot.links.iter().map(|l| l.name.as_str()).collect()
+    }
+
+    /// Number of entries of `q`.
+    #[getter]
+    fn nq(&self) -> usize {
+        self.layout.nq
+    }
+
+    /// Number of entries of `qd` and of every other array over the joints.
+    #[getter]
+    fn nv(&self) -> usize {
+        self.layout.nv
+    }
+
+    /// Whether the root moves freely.
+    #[getter]
+    fn floating(&self) -> bool {
+        self.layout.floating
+    }
+
+    /// Acceleration of gravity in world axes, shape `(3,)` [m/s²].
+    #[getter]
+    fn gravity<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        PyArray1::from_slice(py, &self.robot.gravity.to_array())
+    }
+
+    /// The model used unless a call says otherwise.
+    #[getter]
+    fn model(&self) -> &'static str {
+        self.robot.fidelity.name()
+    }
+
+    /// What of the robot's files was ignored or assumed.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.robot.warnings.iter().map(ToString::to_string).collect()
+    }
+
+    /// Accelerations of links and motors.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     Joint positions, shape `(nq,)` [rad or m].
+    /// qd
+    ///     Joint velocities, shape `(nv,)` [rad/s or m/s].
+    /// theta, thetad
+    ///     Motor positions and velocities seen from the link side, shape `(nv,)`. Needed if the model has elastic joints.
+    /// tau
+    ///     Motor torques seen from the link side, shape `(nv,)` [N m or N]; at joints without a drive they act on the joint.
+    ///     The six entries of a floating root are a wrench on it, in its own frame.
+    /// model
+    ///     Which physics of the motors.
+    /// tau_ext
+    ///     Further generalised forces on the link side of the joints, shape `(nv,)` [N m or N].
+    ///
+    /// Returns
+    /// -------
+    /// (qdd, thetadd)
+    ///     Accelerations of joints and motors, shape `(nv,)` [rad/s² or m/s²]; `thetadd` is seen from the link side and
+    ///     equals `qdd` at joints without an elastic transmission.
+    #[pyo3(signature = (q, qd, theta=None, thetad=None, tau=None, *, model=None, tau_ext=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
+    fn forward_dynamics<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        theta: Option<&Bound<'py, PyAny>>,
+        thetad: Option<&Bound<'py, PyAny>>,
+        tau: Option<&Bound<'py, PyAny>>,
+        model: Option<&str>,
+        tau_ext: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Vector<'py>, Vector<'py>)> {
+        self.with(model, |w| {
+            self.layout.state(w, q, qd, theta, thetad)?;
+            let Some(tau) = tau else {
+                return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
+            };
+            self.layout.forces("tau", tau, &mut w.first)?;
+            let Workspace { dynamics, q, qd, theta, thetad, first: tau, tau_ext: room, out, .. } = w;
+            let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
+            let [qdd, thetadd, tau_j] = out;
+            dynamics
+                .forward(State { q, qd, theta, thetad }, tau, ext, Forward { qdd, thetadd, tau_j })
+                .map_err(errors::raise)?;
+            Ok((vector(py, "qdd", qdd)?, vector(py, "thetadd", thetadd)?))
+        })
+    }
+
+    /// Torques that a motion asks for.
+    ///
+    /// Parameters
+    /// ----------
+    /// q, qd, qdd
+    ///     Joint positions, shape `(nq,)`, velocities and accelerations, shape `(nv,)` [rad or m, per s, per s²].
+    /// theta, thetad, thetadd
+    ///     The same of the motors, seen from the link side, shape `(nv,)`. Needed if the model has elastic joints.
+    /// model
+    ///     Which physics of the motors.
+    /// tau_ext
+    ///     Generalised forces on the link side of the joints that help, shape `(nv,)` [N m or N].
+    ///
+    /// Returns
+    /// -------
+    /// (tau_j, tau)
+    ///     What the transmissions must exert on the joints, and what the motors must exert, seen from the link side; shape
+    ///     `(nv,)` [N m or N]. `tau` is `tau_j` plus rotor inertia, gyroscopic coupling and friction on the motor side.
+    #[pyo3(signature = (q, qd, qdd, theta=None, thetad=None, thetadd=None, *, model=None, tau_ext=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
+    fn inverse_dynamics<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        qdd: &Bound<'py, PyAny>,
+        theta: Option<&Bound<'py, PyAny>>,
+        thetad: Option<&Bound<'py, PyAny>>,
+        thetadd: Option<&Bound<'py, PyAny>>,
+        model: Option<&str>,
+        tau_ext: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Vector<'py>, Vector<'py>)> {
+        self.with(model, |w| {
+            self.layout.state(w, q, qd, theta, thetad)?;
+            self.layout.velocities("qdd", qdd, &mut w.first)?;
+            self.layout.motors("thetadd", thetadd, w.elastic, &mut w.second)?;
+            let Workspace { dynamics, q, qd, theta, thetad, first: qdd, second: thetadd, tau_ext: room, out, .. } = w;
+            let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
+            let [tau_j, tau, _] = out;
+            dynamics
+                .inverse(State { q, qd, theta, thetad }, Acceleration { qdd, thetadd }, ext, Inverse { tau_j, tau })
+                .map_err(errors::raise)?;
+            Ok((vector(py, "tau_j", tau_j)?, vector(py, "tau", tau)?))
+        })
+    }
+
+    /// Inertia matrix `M(q)` of the link side, shape `(nv, nv)` [kg m², kg m, kg]; rigidly geared rotors are fully in.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     Joint positions, shape `(nq,)` [rad or m].
+    /// model
+    ///     Which physics of the motors.
+    #[pyo3(signature = (q, *, model=None))]
+    fn mass_matrix<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, model: Option<&str>) -> PyResult<Matrix<'py>> {
+        self.with(model, |w| {
+            self.layout.positions(q, &mut w.q)?;
+            w.dynamics.mass_matrix(&w.q, &mut w.matrix).map_err(errors::raise)?;
+            matrix(py, "mass matrix", &w.matrix, self.layout.nv)
+        })
+    }
+
+    /// Inertial coupling `S(q)` of link accelerations (rows) and motor accelerations (columns) seen from the link side,
+    /// shape `(nv, nv)` [kg m², kg m, kg]; zero in columns of joints without an elastic transmission.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     Joint positions, shape `(nq,)` [rad or m].
+    /// model
+    ///     Which physics of the motors; the coupling is zero in all but the complete one.
+    #[pyo3(signature = (q, *, model=None))]
+    fn coupling_matrix<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        model: Option<&str>,
+    ) -> PyResult<Matrix<'py>> {
+        self.with(model, |w| {
+            self.layout.positions(q, &mut w.q)?;
+            w.dynamics.coupling(&w.q, &mut w.matrix).map_err(errors::raise)?;
+            matrix(py, "coupling matrix", &w.matrix, self.layout.nv)
+        })
+    }
+
+    /// Pose of a link in the world, shape `(4, 4)`: rotation from the link's axes to the world's, position of its origin [m].
+    ///
+    /// Parameters
+    /// ----------
+    /// frame
+    ///     Name of a link of the URDF, moving, fused or fixed.
+    /// q
+    ///     Joint positions, shape `(nq,)` [rad or m].
+    fn placement<'py>(&self, py: Python<'py>, frame: &str, q: &Bound<'py, PyAny>) -> PyResult<Matrix<'py>> {
+        let links = &self.robot.links;
+        let Some(link) = links.iter().find(|l| l.name == frame) else {
+            let near = nearest(frame, links.iter().map(|l| l.name.as_str())).unwrap_or_default();
+            let problem = format!("the robot has no link `{frame}`");
+            return Err(errors::argument("frame", problem, format!("the nearest known one is `{near}`")));
+        };
+        self.with(None, |w| {
+            self.layout.positions(q, &mut w.q)?;
+            w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
+            let pose = link.body.map_or(link.placement, |body| link.placement.after(w.poses[body]));
+            let [x, y, z] = pose.rotation().rows.map(|row| row.to_array());
+            let p = pose.pos.to_array();
+            let rows = [x, y, z].into_iter().zip(p).flat_map(|(r, p)| [r[0], r[1], r[2], p]);
+            let numbers: Vec<f64> = rows.chain([0.0, 0.0, 0.0, 1.0]).collect();
+            matrix(py, "placement", &numbers, 4)
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let floating = if self.floating() { ", floating root" } else { "" };
+        format!("<Robot {:?}: {} joints{floating}, model {:?}>", self.robot.name, self.joints().count(), self.model())
+    }
+}
+
+impl PyRobot {
+    fn joints(&self) -> impl Iterator<Item = &gyroflex_sim::robot::Joint> {
+        self.robot.joints.iter().skip(usize::from(self.floating()))
+    }
+
+    fn with<R>(&self, model: Option<&str>, call: impl FnOnce(&mut Workspace) -> PyResult<R>) -> PyResult<R> {
+        let fidelity = model.map_or(Ok(self.robot.fidelity), arguments::fidelity)?;
+        self.pool.with(&self.robot, fidelity, call)
+    }
+}
+
+fn vector<'py>(py: Python<'py>, name: &str, numbers: &[f64]) -> PyResult<Vector<'py>> {
+    check_result(name, numbers)?;
+    Ok(PyArray1::from_slice(py, numbers))
+}
+
+/// A square matrix from its rows, one after the other.
+fn matrix<'py>(py: Python<'py>, name: &str, numbers: &[f64], n: usize) -> PyResult<Matrix<'py>> {
+    check_result(name, numbers)?;
+    PyArray1::from_slice(py, numbers).reshape([n, n])
+}
+
+/// Nothing that is not a number leaves this house.
+fn check_result(name: &str, numbers: &[f64]) -> PyResult<()> {
+    if numbers.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(errors::overflow(name)) }
+}

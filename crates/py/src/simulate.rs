@@ -1,0 +1,106 @@
+//! Simulations, and their record as arrays by name.
+
+use crate::errors;
+use gyroflex_sim::error::{Error, ErrorKind};
+use gyroflex_sim::load::{Disk, LoadOptions, load};
+use gyroflex_sim::record::{McapRecorder, MemoryRecorder, Table, TeeRecorder};
+use gyroflex_sim::scenario::ScenarioFile;
+use gyroflex_sim::simulate::Simulation;
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How often a running simulation looks whether the user pressed Ctrl-C.
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
+
+/// A run and how it ended.
+struct Run {
+    memory: MemoryRecorder,
+    warnings: Vec<String>,
+    /// Why the run ended early, if it diverged.
+    diverged: Option<Error>,
+}
+
+/// Runs a scenario with the interpreter released; `gyroflex.simulation` makes a `SimulationResult` of what it returns:
+/// arrays and units by name, names of the joints, metadata, warnings, and the error of a run that diverged.
+#[pyfunction]
+pub(crate) fn run_scenario<'py>(
+    py: Python<'py>,
+    scenario: PathBuf,
+    log: Option<PathBuf>,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let run = py.detach(|| run(&scenario, log.as_deref()))?;
+    let info = run.memory.info();
+    let metadata = PyDict::new(py);
+    for (key, value) in &info.metadata {
+        metadata.set_item(key, value)?;
+    }
+    let (arrays, units) = by_name(py, &run.memory.table())?;
+    let joints = PyTuple::new(py, &info.joints)?;
+    let error = run.diverged.map(|e| errors::raise(e).into_value(py));
+    (arrays, units, joints, metadata, run.warnings, error).into_pyobject(py)
+}
+
+fn run(scenario: &Path, log: Option<&Path>) -> PyResult<Run> {
+    let file = ScenarioFile::load(&Disk, scenario).map_err(errors::raise)?;
+    let robot = load(&file.robot_path(), &LoadOptions::default()).map_err(errors::raise)?;
+    let mut simulation = Simulation::new(&robot, &file).map_err(errors::raise)?;
+    let info = simulation.run_info();
+    let mut memory = MemoryRecorder::new(info.clone());
+    let mut recorder = TeeRecorder::new().with(&mut memory);
+    if let Some(path) = log {
+        recorder = recorder.with(McapRecorder::create(path, info).map_err(errors::raise)?);
+    }
+
+    let mut signal = Ok(());
+    let mut looked = Instant::now();
+    let mut progress = |_| {
+        if looked.elapsed() >= SIGNAL_INTERVAL {
+            looked = Instant::now();
+            signal = Python::attach(|py| py.check_signals());
+        }
+        if signal.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let ended = simulation.run(&mut recorder, &mut progress);
+    drop(recorder);
+    signal?;
+    let diverged = match ended {
+        Ok(_) => None,
+        Err(e) if e.kind == ErrorKind::Diverged => Some(e),
+        Err(e) => return Err(errors::raise(e)),
+    };
+    let warnings = robot.warnings.iter().chain(simulation.warnings()).map(ToString::to_string).collect();
+    Ok(Run { memory, warnings, diverged })
+}
+
+/// Columns `q.joint1`, `q.joint2`, … as one array `q` of a row per sample; columns without a dot as vectors. Poses of the
+/// links, which follow from `q`, stay in the log.
+fn by_name<'py>(py: Python<'py>, table: &Table) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+    let (arrays, units) = (PyDict::new(py), PyDict::new(py));
+    let quantity = |i: usize| table.columns[i].name.split_once('.').map(|(quantity, _)| quantity);
+    let mut first = 0;
+    while first < table.columns.len() {
+        let mut end = first + 1;
+        let Some(name) = quantity(first) else {
+            let column = &table.columns[first];
+            arrays.set_item(&column.name, PyArray1::from_slice(py, &table.values[first]))?;
+            units.set_item(&column.name, (column.unit,))?;
+            first = end;
+            continue;
+        };
+        while end < table.columns.len() && quantity(end) == Some(name) {
+            end += 1;
+        }
+        if name != "frame" {
+            let columns = &table.values[first..end];
+            let rows: Vec<f64> = (0..table.len()).flat_map(|k| columns.iter().map(move |c| c[k])).collect();
+            arrays.set_item(name, PyArray1::from_vec(py, rows).reshape([table.len(), end - first])?)?;
+            units.set_item(name, PyTuple::new(py, table.columns[first..end].iter().map(|c| c.unit))?)?;
+        }
+        first = end;
+    }
+    Ok((arrays, units))
+}

@@ -1,0 +1,73 @@
+"""Python and `gyroflex eval` give the same numbers, to the last bit."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import warnings
+from pathlib import Path
+
+import gyroflex
+import numpy as np
+import pytest
+from conftest import MODELS, PROJECT, random_state
+
+ROBOTS = sorted(PROJECT.glob("robots/*/robot.yaml"))
+STATES = 10
+
+
+def evaluate(binary: Path, robot: Path, lines: list[dict[str, list[float]]], *options: str) -> list[dict[str, list]]:
+    """What `gyroflex eval` answers to each line."""
+    text = "".join(json.dumps(line) + "\n" for line in lines)
+    command = [binary, "eval", robot, "--state", "-", *options]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def assert_same_bits(ours: np.ndarray, theirs: list) -> None:
+    theirs_array = np.array(theirs, dtype=float)
+    assert ours.shape == theirs_array.shape
+    assert ours.tobytes() == theirs_array.tobytes()
+
+
+@pytest.mark.parametrize("floating", [False, True], ids=["fixed", "floating"])
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("path", ROBOTS, ids=[p.parent.name for p in ROBOTS])
+def test_eval_gives_the_same_bits(binary: Path, path: Path, model: str, floating: bool) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", gyroflex.RobotWarning)
+        robot = gyroflex.Robot.load(path, floating=floating)
+    rng = np.random.default_rng(11)
+    states = [random_state(robot, rng) for _ in range(STATES)]
+    tau, qdd, thetadd, tau_ext = rng.normal(size=(4, STATES, robot.nv))
+    forward = [s | {"tau": tau[i], "tau_ext": tau_ext[i]} for i, s in enumerate(states)]
+    inverse = [s | {"qdd": qdd[i], "thetadd": thetadd[i]} for i, s in enumerate(states)]
+
+    lines = [{key: value.tolist() for key, value in query.items()} for query in forward + inverse]
+    options = ["--model", model, "--matrices", *(["--floating"] if floating else [])]
+    answers = evaluate(binary, path, lines, *options)
+    assert len(answers) == 2 * STATES
+    for query, answer in zip(forward, answers[:STATES], strict=True):
+        result = robot.forward_dynamics(**query, model=model)
+        assert_same_bits(result[0], answer["qdd"])
+        assert_same_bits(result[1], answer["thetadd"])
+        assert_same_bits(robot.mass_matrix(query["q"], model=model), answer["M"])
+        assert_same_bits(robot.coupling_matrix(query["q"], model=model), answer["S"])
+    for query, answer in zip(inverse, answers[STATES:], strict=True):
+        result = robot.inverse_dynamics(**query, model=model)
+        assert_same_bits(result[0], answer["tau_j"])
+        assert_same_bits(result[1], answer["tau"])
+
+
+def test_there_are_robots_to_compare() -> None:
+    assert len(ROBOTS) >= 5
+
+
+def test_python_names_joints_as_info_does(binary: Path) -> None:
+    for path in ROBOTS:
+        done = subprocess.run([binary, "info", path, "--json"], capture_output=True, text=True, check=True)
+        names = [joint["name"] for joint in json.loads(done.stdout)["joints"]]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", gyroflex.RobotWarning)
+            assert names == list(gyroflex.Robot.load(path).joint_names)
