@@ -1,20 +1,146 @@
-//! The core's algorithms on owned vectors.
+//! The core's algorithms on owned vectors, with scratch as dirty as asked for.
 
 use gyroflex::dynamics::{
     AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, Power, RneaScratch,
-    State, coupling, crba, energy, forward_dynamics, forward_in_joint_space, matrix_len, power, reflected_inertia,
+    State, aba, coupling, crba, energy, forward_dynamics, forward_in_joint_space, matrix_len, power, reflected_inertia,
     rnea,
 };
 use gyroflex::model::{Fidelity, Model, RobotSpec, SizeError};
 use gyroflex::spatial::{Force, Motion, Transform};
-use gyroflex_testkit::Lowered;
 use gyroflex_testkit::dense::{Accelerations, Torques};
 use gyroflex_testkit::tolerance::Real;
+use gyroflex_testkit::{Lowered, State as Point};
 
-/// A robot lowered to one model and scalar. Inputs and results are `f64` at the border.
+/// A robot lowered to one model and scalar; states and results are `f64` at the border.
 #[derive(Clone, Debug)]
 pub struct Core<T> {
     lowered: Lowered<T>,
+    dirty: bool,
+}
+
+impl<T: Real> Core<T> {
+    /// Lowers a description that is known to be valid.
+    ///
+    /// # Panics
+    /// If the core finds it is not; and in all that follows, if a state does not fit the robot.
+    pub fn new(spec: &RobotSpec<'_>, fidelity: Fidelity) -> Self {
+        Self { lowered: Lowered::new(spec, fidelity).expect("a random robot is valid"), dirty: false }
+    }
+
+    /// Runs every algorithm on NaN first, and then again in the scratch that is left.
+    pub fn with_dirty_scratch(self) -> Self {
+        Self { dirty: true, ..self }
+    }
+
+    /// The view the algorithms take.
+    pub fn model(&self) -> Model<'_, T> {
+        self.lowered.view()
+    }
+
+    /// `forward_dynamics`, by whichever route the core picks.
+    pub fn forward(&self, s: &Point) -> Accelerations {
+        let model = self.model();
+        let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
+        let mut matrix = vec![nan(); matrix_len(&model)];
+        self.write_forward(s, |x, out| {
+            let scratch = ForwardScratch { bodies: &mut bodies, matrix: &mut matrix };
+            forward_dynamics(&model, x.state(), &x.tau, x.external(), scratch, out)
+        })
+    }
+
+    /// `aba`, which is exact unless a rigid rotor sits away from its joint.
+    pub fn aba(&self, s: &Point) -> Accelerations {
+        let model = self.model();
+        let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
+        self.write_forward(s, |x, out| aba(&model, x.state(), &x.tau, x.external(), &mut bodies, out))
+    }
+
+    /// Forward dynamics by the inertia matrix.
+    pub fn forward_in_joint_space(&self, s: &Point) -> Accelerations {
+        let model = self.model();
+        let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
+        let mut matrix = vec![nan(); model.nv() * model.nv()];
+        self.write_forward(s, |x, out| {
+            forward_in_joint_space(&model, x.state(), &x.tau, x.external(), &mut bodies, &mut matrix, out)
+        })
+    }
+
+    fn write_forward(
+        &self,
+        s: &Point,
+        mut run: impl FnMut(&Inputs<T>, Forward<'_, T>) -> Result<(), SizeError>,
+    ) -> Accelerations {
+        let nv = self.model().nv();
+        let (mut qdd, mut thetadd, mut tau_j) = (vec![nan(); nv], vec![nan(); nv], vec![nan(); nv]);
+        self.call(s, |x| run(x, Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j }));
+        Accelerations { qdd: double(&qdd), thetadd: double(&thetadd), tau_j: double(&tau_j) }
+    }
+
+    /// `rnea`.
+    pub fn inverse(&self, s: &Point) -> Torques {
+        let model = self.model();
+        let mut scratch = vec![RneaScratch::new(); model.bodies().len()];
+        let (mut tau_j, mut tau) = (vec![nan(); model.nv()], vec![nan(); model.nv()]);
+        self.call(s, |x| {
+            let accel = Acceleration { qdd: &x.qdd, thetadd: &x.thetadd };
+            let out = Inverse { tau_j: &mut tau_j, tau: &mut tau };
+            rnea(&model, x.state(), accel, x.external(), &mut scratch, out)
+        });
+        Torques { tau_j: double(&tau_j), tau: double(&tau) }
+    }
+
+    /// `crba`, by rows.
+    pub fn mass_matrix(&self, s: &Point) -> Vec<f64> {
+        self.write_matrix(s, crba)
+    }
+
+    /// `coupling`, by rows.
+    pub fn coupling(&self, s: &Point) -> Vec<f64> {
+        self.write_matrix(s, coupling)
+    }
+
+    fn write_matrix(
+        &self,
+        s: &Point,
+        run: impl Fn(&Model<'_, T>, &[T], &mut [CrbaScratch<T>], &mut [T]) -> Result<(), SizeError>,
+    ) -> Vec<f64> {
+        let model = self.model();
+        let mut scratch = vec![CrbaScratch::new(); model.bodies().len()];
+        let mut m = vec![nan(); model.nv() * model.nv()];
+        self.call(s, |x| run(&model, &x.q, &mut scratch, &mut m));
+        double(&m)
+    }
+
+    /// The diagonal of `B`.
+    pub fn reflected_inertia(&self) -> Vec<f64> {
+        let mut b = vec![nan(); self.model().nv()];
+        reflected_inertia(&self.model(), &mut b).expect("slices fit the model");
+        double(&b)
+    }
+
+    /// `energy`.
+    pub fn energy(&self, s: &Point) -> Energy<f64> {
+        let model = self.model();
+        let mut scratch = vec![(Transform::identity(), Motion::zero()); model.bodies().len()];
+        let e = self.call(s, |x| energy(&model, x.state(), &mut scratch));
+        Energy { kinetic: e.kinetic.into(), gravity: e.gravity.into(), elastic: e.elastic.into() }
+    }
+
+    /// `power`.
+    pub fn power(&self, s: &Point) -> Power<f64> {
+        let model = self.model();
+        let mut scratch = vec![(Transform::identity(), Motion::zero()); model.bodies().len()];
+        let p = self.call(s, |x| power(&model, x.state(), &x.tau, x.external(), &mut scratch));
+        Power { supplied: p.supplied.into(), dissipated: p.dissipated.into() }
+    }
+
+    fn call<R>(&self, s: &Point, mut run: impl FnMut(&Inputs<T>) -> Result<R, SizeError>) -> R {
+        let x = Inputs::new(s);
+        if self.dirty {
+            run(&x.spoilt()).expect("slices fit the model");
+        }
+        run(&x).expect("slices fit the model")
+    }
 }
 
 /// A state in the scalar.
@@ -31,7 +157,7 @@ struct Inputs<T> {
 }
 
 impl<T: Real> Inputs<T> {
-    fn new(s: &gyroflex_testkit::State) -> Self {
+    fn new(s: &Point) -> Self {
         Self {
             q: cast(&s.q),
             qd: cast(&s.qd),
@@ -45,127 +171,28 @@ impl<T: Real> Inputs<T> {
         }
     }
 
+    /// NaN wherever there was a number.
+    fn spoilt(&self) -> Self {
+        let nans = |x: &[T]| vec![nan(); x.len()];
+        Self {
+            q: nans(&self.q),
+            qd: nans(&self.qd),
+            theta: nans(&self.theta),
+            thetad: nans(&self.thetad),
+            qdd: nans(&self.qdd),
+            thetadd: nans(&self.thetadd),
+            tau: nans(&self.tau),
+            tau_ext: nans(&self.tau_ext),
+            wrenches: vec![Force::from([nan(); 6]); self.wrenches.len()],
+        }
+    }
+
     fn state(&self) -> State<'_, T> {
         State { q: &self.q, qd: &self.qd, theta: &self.theta, thetad: &self.thetad }
     }
 
     fn external(&self) -> External<'_, T> {
         External { tau: &self.tau_ext, wrenches: &self.wrenches }
-    }
-}
-
-impl<T: Real> Core<T> {
-    /// Lowers a description that is known to be valid.
-    ///
-    /// # Panics
-    /// If the core finds it is not.
-    pub fn new(spec: &RobotSpec<'_>, fidelity: Fidelity) -> Self {
-        Self { lowered: Lowered::new(spec, fidelity).expect("a random robot is valid") }
-    }
-
-    /// The view the algorithms take.
-    pub fn model(&self) -> Model<'_, T> {
-        self.lowered.view()
-    }
-
-    /// `forward_dynamics`, by whichever route the core picks.
-    pub fn forward(&self, s: &gyroflex_testkit::State) -> Accelerations {
-        let (model, x) = (self.model(), Inputs::<T>::new(s));
-        let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
-        let mut matrix = vec![nan(); matrix_len(&model)];
-        self.write_forward(|out| {
-            let scratch = ForwardScratch { bodies: &mut bodies, matrix: &mut matrix };
-            forward_dynamics(&model, x.state(), &x.tau, x.external(), scratch, out)
-        })
-    }
-
-    /// Forward dynamics by the inertia matrix.
-    pub fn forward_in_joint_space(&self, s: &gyroflex_testkit::State) -> Accelerations {
-        let (model, x) = (self.model(), Inputs::<T>::new(s));
-        let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
-        let mut matrix = vec![nan(); model.nv() * model.nv()];
-        self.write_forward(|out| {
-            forward_in_joint_space(&model, x.state(), &x.tau, x.external(), &mut bodies, &mut matrix, out)
-        })
-    }
-
-    fn write_forward(&self, run: impl FnOnce(Forward<'_, T>) -> Result<(), SizeError>) -> Accelerations {
-        let nv = self.model().nv();
-        let (mut qdd, mut thetadd, mut tau_j) = (vec![nan(); nv], vec![nan(); nv], vec![nan(); nv]);
-        run(Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j }).expect("slices fit the model");
-        Accelerations { qdd: double(&qdd), thetadd: double(&thetadd), tau_j: double(&tau_j) }
-    }
-
-    /// `rnea`.
-    ///
-    /// # Panics
-    /// If the state does not fit the robot, as everywhere here.
-    pub fn inverse(&self, s: &gyroflex_testkit::State) -> Torques {
-        let (model, x) = (self.model(), Inputs::<T>::new(s));
-        let mut scratch = vec![RneaScratch::new(); model.bodies().len()];
-        let (mut tau_j, mut tau) = (vec![nan(); model.nv()], vec![nan(); model.nv()]);
-        let accel = Acceleration { qdd: &x.qdd, thetadd: &x.thetadd };
-        let out = Inverse { tau_j: &mut tau_j, tau: &mut tau };
-        rnea(&model, x.state(), accel, x.external(), &mut scratch, out).expect("slices fit the model");
-        Torques { tau_j: double(&tau_j), tau: double(&tau) }
-    }
-
-    /// `crba`, by rows.
-    ///
-    /// # Panics
-    /// If the state does not fit the robot.
-    pub fn mass_matrix(&self, q: &[f64]) -> Vec<f64> {
-        self.write_matrix(q, crba)
-    }
-
-    /// `coupling`, by rows.
-    ///
-    /// # Panics
-    /// If the state does not fit the robot.
-    pub fn coupling(&self, q: &[f64]) -> Vec<f64> {
-        self.write_matrix(q, coupling)
-    }
-
-    fn write_matrix(
-        &self,
-        q: &[f64],
-        run: impl FnOnce(&Model<'_, T>, &[T], &mut [CrbaScratch<T>], &mut [T]) -> Result<(), SizeError>,
-    ) -> Vec<f64> {
-        let model = self.model();
-        let mut scratch = vec![CrbaScratch::new(); model.bodies().len()];
-        let mut m = vec![nan(); model.nv() * model.nv()];
-        run(&model, &cast(q), &mut scratch, &mut m).expect("slices fit the model");
-        double(&m)
-    }
-
-    /// The diagonal of `B`.
-    ///
-    /// # Panics
-    /// Never, for a valid robot.
-    pub fn reflected_inertia(&self) -> Vec<f64> {
-        let mut b = vec![nan(); self.model().nv()];
-        reflected_inertia(&self.model(), &mut b).expect("slices fit the model");
-        double(&b)
-    }
-
-    /// `energy`.
-    ///
-    /// # Panics
-    /// If the state does not fit the robot.
-    pub fn energy(&self, s: &gyroflex_testkit::State) -> Energy<T> {
-        let (model, x) = (self.model(), Inputs::<T>::new(s));
-        let mut scratch = vec![(Transform::identity(), Motion::zero()); model.bodies().len()];
-        energy(&model, x.state(), &mut scratch).expect("slices fit the model")
-    }
-
-    /// `power`.
-    ///
-    /// # Panics
-    /// If the state does not fit the robot.
-    pub fn power(&self, s: &gyroflex_testkit::State) -> Power<T> {
-        let (model, x) = (self.model(), Inputs::<T>::new(s));
-        let mut scratch = vec![(Transform::identity(), Motion::zero()); model.bodies().len()];
-        power(&model, x.state(), &x.tau, x.external(), &mut scratch).expect("slices fit the model")
     }
 }
 

@@ -1,8 +1,8 @@
-//! Laws that cross crates; see the files beside `src`. Here is what they share: the core run on random robots in any
-//! scalar, with scratch as dirty as it gets.
+//! Laws that cross crates; see the files in `tests/`. Here is what they share: the core run on random robots in any
+//! scalar, and the loop over robots.
 
 mod core_run;
 mod laws;
 
 pub use core_run::Core;
-pub use laws::{Context, for_robots};
+pub use laws::{Trial, for_trials, small};

@@ -1,2 +1,21 @@
-//! The `gyroflex` command.
-fn main() {}
+//! The `gyroflex` command: arguments, progress, exit codes. The physics is in `gyroflex-sim`.
+
+mod args;
+mod commands;
+mod failure;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let done = match &cli.command {
+        Command::Simulate(_) => Ok(()),
+        Command::Info(args) => commands::info::run(args, cli.quiet),
+        Command::Eval(args) => commands::eval::run(args, cli.quiet),
+        Command::Schema(args) => commands::schema::run(args),
+        Command::Completions(args) => commands::completions::run(args),
+    };
+    ExitCode::from(done.map_or_else(|failure| failure.report(), |()| 0))
+}

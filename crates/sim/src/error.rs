@@ -69,3 +69,16 @@ impl fmt::Display for Warning {
         write!(f, "{}: {}: {}", self.file, self.element, self.message)
     }
 }
+
+/// Results that cannot be written as JSON.
+impl From<serde_json::Error> for Error {
+    fn from(e: serde_json::Error) -> Self {
+        Self {
+            kind: ErrorKind::Io,
+            file: String::new(),
+            element: String::new(),
+            problem: format!("the result cannot be written as JSON: {e}"),
+            remedy: "use names of plain text".to_owned(),
+        }
+    }
+}

@@ -5,6 +5,8 @@ pub mod coordinates;
 pub mod dynamics;
 pub mod equilibrium;
 pub mod error;
+pub mod eval;
+pub mod info;
 pub mod load;
 pub mod loads;
 pub mod modes;
@@ -17,6 +19,7 @@ pub mod simulate;
 
 pub use dynamics::Dynamics;
 pub use error::{Error, ErrorKind};
+pub use gyroflex::model::Fidelity;
 pub use robot::Robot;
 pub use scenario::{Scenario, ScenarioFile, scenario_schema};
 pub use simulate::{Simulation, Summary};

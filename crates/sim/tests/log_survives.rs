@@ -49,9 +49,9 @@ fn written(bytes: &[u8], path: &Path) -> gyroflex_sim::record::StateLog {
 }
 
 /// Counts the samples on disk once the recorder has closed a chunk: `(size of the file, samples in it)`.
-fn chunk_ends(samples: usize) -> (Vec<u8>, Vec<(usize, usize)>) {
+fn chunk_ends(limits: ChunkLimits, samples: usize) -> (Vec<u8>, Vec<(usize, usize)>) {
     let disk = Disk::new(usize::MAX);
-    let mut recorder = McapRecorder::new(disk.clone(), "disk", info(), SMALL).unwrap();
+    let mut recorder = McapRecorder::new(disk.clone(), "disk", info(), limits).unwrap();
     let mut ends = vec![(disk.bytes.borrow().len(), 0)];
     for k in 0..samples {
         recorder.record(&sample(k)).unwrap();
@@ -66,10 +66,12 @@ fn chunk_ends(samples: usize) -> (Vec<u8>, Vec<(usize, usize)>) {
 
 #[test]
 fn log_cut_at_any_byte_loses_at_most_the_chunk_that_was_cut() {
-    let (bytes, ends) = chunk_ends(15);
-    assert!(ends.len() > 5, "several chunks");
+    let (bytes, ends) = chunk_ends(ChunkLimits { bytes: 1, ..SMALL }, 4);
+    assert!(ends.len() == 5, "a chunk a sample");
     let path = folder("log_cut").join("cut.mcap");
-    for cut in 0..bytes.len() {
+    // Every byte where samples are; what comes before and after them is long and all alike.
+    let samples = ends[0].0..=ends[4].0;
+    for cut in (0..bytes.len()).filter(|cut| samples.contains(cut) || cut % 11 == 0) {
         let safe = ends.iter().rev().find(|(size, _)| *size <= cut).map_or(0, |(_, samples)| *samples);
         let log = written(&bytes[..cut], &path);
         assert!(!log.complete);
@@ -83,7 +85,7 @@ fn log_cut_at_any_byte_loses_at_most_the_chunk_that_was_cut() {
 
 #[test]
 fn samples_are_never_torn_between_chunks() {
-    let (bytes, _) = chunk_ends(41);
+    let (bytes, _) = chunk_ends(SMALL, 41);
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
     let messages = |index| summary.stream_chunk(&bytes, index).unwrap().map(Result::unwrap).count();
     let counts: Vec<_> = summary.chunk_indexes.iter().map(messages).collect();
@@ -148,7 +150,7 @@ fn killed_run_leaves_all_its_closed_chunks() {
     child.wait().unwrap();
     let log = read_states(&path).unwrap();
     assert!(!log.complete);
-    let (bytes, ends) = chunk_ends(log.table.len() + 20);
+    let (bytes, ends) = chunk_ends(SMALL, log.table.len() + 20);
     // The same run, never killed, has the same chunks: what the kill left is a prefix of it.
     let left = std::fs::read(&path).unwrap();
     assert!(bytes.starts_with(&left));
@@ -165,7 +167,7 @@ fn full_disk_is_an_error_that_names_the_log_and_keeps_what_was_written() {
     assert!(!e.remedy.is_empty());
     assert!(recorder.finish().is_err());
     let log = written(&disk.bytes.take(), &folder("log_full").join("cut.mcap"));
-    let a_chunk = chunk_ends(40).1[1].1;
+    let a_chunk = chunk_ends(SMALL, 40).1[1].1;
     assert!(log.table.len() + a_chunk > failed, "{} of {failed} samples", log.table.len());
 }
 

@@ -1,5 +1,6 @@
 //! Reference cases from outside; see `tests/reference/README.md`.
 
+use crate::State;
 use gyroflex::model::{
     BodySpec, DriveSpec, Friction, JointKind, MountSpec, RobotSpec, RotorBody, RotorSpec, SpringSpec,
     TransmissionError, TransmissionSpec,
@@ -70,6 +71,29 @@ impl Case {
     /// The samples, where the case has any.
     pub fn samples(&self) -> &[Value] {
         self.json["samples"].as_array().map_or(&[], Vec::as_slice)
+    }
+
+    /// The state of a sample, reflected; what the sample does not give is zero.
+    pub fn state(&self, sample: &Value) -> State {
+        let given = |key: &str| sample.get(key).map_or(vec![0.0; self.gear_ratios.len()], numbers);
+        State {
+            q: given("q"),
+            qd: given("qd"),
+            qdd: given("qdd"),
+            theta: self.reflect(&given("theta_m")),
+            thetad: self.reflect(&given("thetad_m")),
+            thetadd: self.reflect(&given("thetadd_m")),
+            tau: self.reflect_torque(&given("u")),
+            tau_ext: given("d_l"),
+            wrenches: Vec::new(),
+        }
+    }
+
+    /// What a sample expects under a label. Without transmission errors the labels `consistent` and `paper` coincide, and
+    /// the file may give the latter alone.
+    pub fn expected<'s>(&self, sample: &'s Value, label: &str) -> &'s Value {
+        let all = &sample["expected"];
+        all.get(label).unwrap_or(&all[label.replace("consistent", "paper")])
     }
 
     /// Motor angles, rates or accelerations to reflected ones: divided by the gear ratios.

@@ -5,26 +5,8 @@ use gyroflex_testkit::State;
 use gyroflex_testkit::dense::Oracle;
 use gyroflex_testkit::reference::{Case, number, numbers, rows};
 use gyroflex_testkit::tolerance::{assert_close, assert_close_above, norm};
-use serde_json::Value;
 
 const TOLERANCE: f64 = 1e-10;
-
-/// The state of a sample, reflected; what the sample does not give is zero.
-fn state(case: &Case, sample: &Value) -> State {
-    let n = case.gear_ratios.len();
-    let given = |key: &str| sample.get(key).map_or(vec![0.0; n], numbers);
-    State {
-        q: given("q"),
-        qd: given("qd"),
-        qdd: given("qdd"),
-        theta: case.reflect(&given("theta_m")),
-        thetad: case.reflect(&given("thetad_m")),
-        thetadd: case.reflect(&given("thetadd_m")),
-        tau: case.reflect_torque(&given("u")),
-        tau_ext: given("d_l"),
-        wrenches: Vec::new(),
-    }
-}
 
 fn without_gravity<'a>(spec: RobotSpec<'a>, fidelity: Fidelity) -> Oracle<'a> {
     Oracle::new(spec, fidelity).with_gravity([0.0; 3])
@@ -38,7 +20,7 @@ fn elastic_forward_dynamics() {
         {
             for sample in case.samples() {
                 let want = &sample["expected"][label];
-                let got = Oracle::new(case.spec(), fidelity).forward(&state(&case, sample));
+                let got = Oracle::new(case.spec(), fidelity).forward(&case.state(sample));
                 let context = format!("{} {label}", case.name);
                 assert_close("qdd", &context, &got.qdd, &numbers(&want["qdd"]), TOLERANCE);
                 assert_close("tau_j", &context, &got.tau_j, &numbers(&want["tau_J"]), TOLERANCE);
@@ -55,7 +37,7 @@ fn rigid_forward_dynamics_mass_matrix_and_bias() {
         for (fidelity, label) in [(Fidelity::Rigid, "rigid_full"), (Fidelity::RigidReflected, "rigid_diag")] {
             for sample in case.samples() {
                 let want = &sample["expected"][label];
-                let (s, oracle) = (state(&case, sample), Oracle::new(case.spec(), fidelity));
+                let (s, oracle) = (case.state(sample), Oracle::new(case.spec(), fidelity));
                 let context = format!("{} {label}", case.name);
                 assert_close("qdd", &context, &oracle.forward(&s).qdd, &numbers(&want["qdd"]), TOLERANCE);
                 let m = oracle.matrices(&s).m;
@@ -75,7 +57,7 @@ fn rigid_forward_dynamics_mass_matrix_and_bias() {
 fn inverse_dynamics_at_a_point() {
     for case in Case::of_kind("inverse_point") {
         for sample in case.samples() {
-            let (s, want) = (state(&case, sample), &sample["expected"]);
+            let (s, want) = (case.state(sample), &sample["expected"]);
             let n = s.qd.len();
             let oracle = Oracle::new(case.spec(), Fidelity::Complete);
             let forces = oracle.tree_forces(&s);
@@ -102,16 +84,14 @@ fn inverse_dynamics_along_a_trajectory() {
             [(Fidelity::Complete, "complete_consistent"), (Fidelity::Reduced, "reduced_consistent")]
         {
             for sample in case.samples() {
-                // Without transmission errors the two labels coincide, and the file gives one.
-                let want = &sample["expected"];
-                let want = want.get(label).unwrap_or(&want[label.replace("consistent", "paper")]);
+                let want = case.expected(sample, label);
                 let motor = |key: &str| case.reflect(&numbers(&want[key]));
                 let s = State {
                     theta: motor("theta_m"),
                     thetad: motor("thetad_m"),
                     thetadd: motor("thetadd_m"),
                     tau: case.reflect_torque(&numbers(&want["u"])),
-                    ..state(&case, sample)
+                    ..case.state(sample)
                 };
                 let context = format!("{} {label} at {}", case.name, sample["t"]);
                 let oracle = Oracle::new(case.spec(), fidelity);
@@ -136,7 +116,7 @@ fn simulation() {
         let labels = ["complete", "reduced", "rigid_full", "rigid_diag"];
         for (fidelity, label) in Fidelity::ALL.into_iter().zip(labels) {
             let oracle = Oracle::new(case.spec(), fidelity);
-            let mut s = state(&case, &case.json);
+            let mut s = case.state(&case.json);
             let want = &case.json["expected"][label];
             for (k, window) in times.windows(2).enumerate() {
                 // Springs are the fast part; a rigid gear has none.
@@ -186,7 +166,7 @@ fn matrices_and_energies() {
     for case in Case::of_kind("matrices") {
         let mut offset = None;
         for sample in case.samples() {
-            let (s, want) = (state(&case, sample), &sample["expected"]);
+            let (s, want) = (case.state(sample), &sample["expected"]);
             let (n, gears) = (s.qd.len(), &case.gear_ratios);
             let oracle = Oracle::new(case.spec(), Fidelity::Complete);
             let got = oracle.matrices(&s);
@@ -221,7 +201,7 @@ fn matrices_and_energies() {
 fn christoffel_matrices_are_polarisations_of_the_velocity_terms() {
     for case in Case::of_kind("matrices") {
         for sample in case.samples() {
-            let (s, want) = (state(&case, sample), &sample["expected"]);
+            let (s, want) = (case.state(sample), &sample["expected"]);
             let (n, gears) = (s.qd.len(), &case.gear_ratios);
             let oracle = without_gravity(case.spec(), Fidelity::Complete);
             let terms = |qd: &[f64], thetad: &[f64]| {

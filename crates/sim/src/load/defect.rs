@@ -21,11 +21,14 @@ pub(crate) fn explain(e: &ModelError, robot: &Robot, file: String) -> Error {
         (_, Some(key)) => format!("joint `{name}`, {key}"),
         (_, None) => format!("joint `{name}` (link `{child}`)"),
     };
+    // Some of the core's texts end in a remedy of their own.
+    let text = e.defect.to_string();
+    let problem = text.split("; ").next().unwrap_or(&text).to_owned();
     Error {
         kind: ErrorKind::Model,
         file: place.map_or(file, str::to_owned),
         element,
-        problem: e.defect.to_string(),
+        problem,
         remedy: remedy(&e.defect).to_owned(),
     }
 }

@@ -1,6 +1,6 @@
 //! Links that are rigidly connected become one body.
 
-use super::inertial::inertia;
+use super::inertial;
 use super::tree::{JointElement, Tree};
 use super::{LoadOptions, Mimic};
 use crate::error::{Error, ErrorKind, Warning};
@@ -42,16 +42,20 @@ pub(crate) fn fuse(tree: &Tree, options: &LoadOptions, warnings: &mut Vec<Warnin
             out.bodies.push(body(parent, kind, joint.axis, placement));
         }
         let (carrier, place) = places[index];
-        let own = inertia(link, carrier.is_some(), warnings)?;
         if let Some(carrier) = carrier {
             let sum = &mut out.bodies[carrier].inertia;
-            *sum = *sum + own.seen_from_parent(place);
+            *sum = *sum + inertial::inertia(link).seen_from_parent(place);
         }
         for joint_index in &link.child_joints {
             let joint = &tree.joints[*joint_index];
             places[joint.child] = (carrier, joint.origin.after(place));
         }
         open.extend(link.child_joints.iter().rev().map(|j| tree.joints[*j].child));
+    }
+    for (link, (carrier, _)) in tree.links.iter().zip(&places) {
+        if let Some(carrier) = carrier {
+            inertial::check(link, &out.bodies[*carrier].inertia, warnings)?;
+        }
     }
     for joint in tree.joints.iter().filter(|j| !j.moves()) {
         if let Some(leader) = &joint.mimics {

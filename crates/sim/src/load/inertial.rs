@@ -1,4 +1,4 @@
-//! The inertia of one link, and whether it is that of a body.
+//! The inertia of one link, and whether bodies have such inertias.
 
 use super::pose::rotation;
 use super::tree::LinkElement;
@@ -8,51 +8,77 @@ use nalgebra::Matrix3;
 
 /// Rounding that files with few digits carry, as part of the largest principal moment.
 const ROUNDING: f64 = 1e-6;
+/// Moments this small are rounding whatever stands beside them: a gram a micrometre away [kg m²].
+const NOTHING: f64 = 1e-15;
 
-/// The inertia of a link about the origin of its frame. `matters` is false for links that do not move.
-pub(crate) fn inertia(
-    link: &LinkElement,
-    matters: bool,
-    warnings: &mut Vec<Warning>,
-) -> Result<SpatialInertia<f64>, Error> {
-    let Some(inertial) = &link.inertial else { return Ok(SpatialInertia::zero()) };
-    let (mass, i) = (inertial.mass.value, &inertial.inertia);
-    let about_com = SymMat3 { xx: i.ixx, yy: i.iyy, zz: i.izz, xy: i.ixy, xz: i.ixz, yz: i.iyz };
-    if matters {
-        let fault = |problem: String, remedy: &str| Error {
-            kind: ErrorKind::Model,
-            file: link.at.clone(),
-            element: format!("link `{}`", link.name),
-            problem,
-            remedy: remedy.to_owned(),
-        };
-        if mass < 0.0 {
+/// The inertia of a link about the origin of its frame.
+pub(crate) fn inertia(link: &LinkElement) -> SpatialInertia<f64> {
+    let Some(inertial) = &link.inertial else { return SpatialInertia::zero() };
+    let r = rotation(inertial.origin.rpy.0);
+    let com = Vec3::from(inertial.origin.xyz.0);
+    SpatialInertia::from_com(inertial.mass.value, com, about_com(inertial).congruence(r.transpose()))
+}
+
+/// Judges the own inertia of a link that is part of the moving `body`.
+///
+/// A negative moment is an error unless other links fused to this one make up for it: forward dynamics could divide by
+/// zero. The triangle inequality only tells that no distribution of mass has these moments; the equations of motion stay
+/// well posed, and published models that violate it are many, so that it is a warning.
+pub(crate) fn check(link: &LinkElement, body: &SpatialInertia<f64>, warnings: &mut Vec<Warning>) -> Result<(), Error> {
+    let Some(inertial) = &link.inertial else { return Ok(()) };
+    let element = format!("link `{}`", link.name);
+    let fault = |problem: String, remedy: &str| Error {
+        kind: ErrorKind::Model,
+        file: link.at.clone(),
+        element: element.clone(),
+        problem,
+        remedy: remedy.to_owned(),
+    };
+    let mass = inertial.mass.value;
+    if mass < 0.0 {
+        return Err(fault(format!("its mass is negative: {mass} kg"), "give its mass, or 0 for a frame without mass"));
+    }
+    let moments @ [least, middle, most] = principal_moments(&about_com(inertial));
+    let named = format!("{least:.6e}, {middle:.6e}, {most:.6e} kg m²");
+    let mut warn = |message: String| {
+        warnings.push(Warning { file: link.at.clone(), element: element.clone(), message });
+    };
+    if is_negative(moments) {
+        if is_negative(principal_moments(&about_own_com(body))) {
             return Err(fault(
-                format!("its mass is negative: {mass} kg"),
-                "give its mass, or 0 for a frame without mass",
-            ));
-        }
-        let [least, middle, most] = principal_moments(&about_com);
-        if least < -ROUNDING * most.abs() {
-            return Err(fault(
-                format!("its inertia has a negative principal moment ({least:.6e}, {middle:.6e}, {most:.6e} kg m²)"),
+                format!("its inertia has a negative principal moment ({named})"),
                 "check the signs of the products of inertia, and that the inertia is about the centre of mass",
             ));
         }
-        if least + middle < most * (1.0 - ROUNDING) {
-            warnings.push(Warning {
-                file: link.at.clone(),
-                element: format!("link `{}`", link.name),
-                message: format!(
-                    "its principal moments {least:.6e}, {middle:.6e}, {most:.6e} kg m² violate the triangle inequality: \
-                     no distribution of mass has them; used as they are, since the equations of motion stay well posed"
-                ),
-            });
-        }
+        warn(format!(
+            "its inertia has a negative principal moment ({named}); used as it is, since the links on fixed joints around it \
+             make up for it"
+        ));
+    } else if least + middle < most * (1.0 - ROUNDING) - NOTHING {
+        warn(format!(
+            "its principal moments ({named}) violate the triangle inequality: no distribution of mass has them; \
+             used as they are, since the equations of motion stay well posed"
+        ));
     }
-    let r = rotation(inertial.origin.rpy.0);
-    let com = Vec3::from(inertial.origin.xyz.0);
-    Ok(SpatialInertia::from_com(mass, com, about_com.congruence(r.transpose())))
+    Ok(())
+}
+
+fn about_com(inertial: &urdf_rs::Inertial) -> SymMat3<f64> {
+    let i = &inertial.inertia;
+    SymMat3 { xx: i.ixx, yy: i.iyy, zz: i.izz, xy: i.ixy, xz: i.ixz, yz: i.iyz }
+}
+
+/// The rotational inertia of a body about its own centre of mass.
+fn about_own_com(body: &SpatialInertia<f64>) -> SymMat3<f64> {
+    if body.mass == 0.0 {
+        return body.rotational;
+    }
+    let com = body.first_moment.scale(1.0 / body.mass);
+    body.rotational - SpatialInertia::from_com(body.mass, com, SymMat3::zero()).rotational
+}
+
+fn is_negative([least, _, most]: [f64; 3]) -> bool {
+    least < -ROUNDING * most.abs() - NOTHING
 }
 
 /// Principal moments from the least to the largest [kg m²].

@@ -112,14 +112,16 @@ pub(crate) fn read(xml: &Xml<'_>) -> Result<Tree, Error> {
                 "a link has one parent: closed loops are not supported, cut the loop at one joint",
             ));
         }
-        let axis_node = child(node, "axis");
-        let axis = direction(joint.axis.xyz.0).ok_or_else(|| {
-            xml.error(
-                axis_node.unwrap_or(node),
-                "the joint axis is zero",
-                "give the direction of the axis, such as <axis xyz=\"0 0 1\"/>",
-            )
-        })?;
+        // Files often give fixed joints an axis of zero; it means nothing there.
+        let axis = match direction(joint.axis.xyz.0) {
+            Some(axis) => axis,
+            None if joint.joint_type == JointType::Fixed => Vec3::new(1.0, 0.0, 0.0),
+            None => {
+                let (node, remedy) =
+                    (child(node, "axis").unwrap_or(node), "give its direction, such as <axis xyz=\"0 0 1\"/>");
+                return Err(xml.error(node, "the joint axis is zero", remedy));
+            }
+        };
         links[child_link].parent_joint = Some(index);
         links[parent].child_joints.push(index);
         joints.push(JointElement {

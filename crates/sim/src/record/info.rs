@@ -55,3 +55,83 @@ impl RunInfo {
 fn is_elastic(drive: &DriveSpec) -> bool {
     matches!(drive.transmission, TransmissionSpec::Elastic { .. })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::{Joint, Link, SourceFile};
+    use gyroflex::model::{BodySpec, Friction, MountSpec, RotorSpec, SpringSpec, TransmissionError};
+    use gyroflex::spatial::{SpatialInertia, Transform, Vec3};
+
+    /// A floating root, an elastic turning joint, a sliding one without a drive, and a link fused to the last.
+    fn robot() -> Robot {
+        let mount = MountSpec { body: Some(0), placement: Transform::identity(), axis: Vec3::new(0.0, 0.0, 1.0) };
+        let transmission = TransmissionSpec::Elastic {
+            spring: SpringSpec::Polynomial { stiffness: 1.0, cubic: 0.0 },
+            damping: 0.0,
+            error: TransmissionError::none(),
+        };
+        let rotor = RotorSpec { inertia: 1.0, body: None, mount };
+        let drive = DriveSpec { rotor, gear_ratio: -105.0, transmission, friction: Friction::none() };
+        let kinds = [(JointKind::Floating, None), (JointKind::Revolute, Some(drive)), (JointKind::Prismatic, None)];
+        let bodies = kinds.map(|(joint, drive)| BodySpec {
+            parent: None,
+            joint,
+            axis: Vec3::new(0.0, 0.0, 1.0),
+            placement: Transform::identity(),
+            inertia: SpatialInertia::zero(),
+            friction: Friction::none(),
+            drive,
+        });
+        let joints = [("root", "floating"), ("turn", "revolute"), ("slide", "prismatic")].map(|(name, kind)| Joint {
+            name: name.to_owned(),
+            urdf_type: kind.to_owned(),
+            parent_link: String::new(),
+            child_link: String::new(),
+            limits: None,
+            max_velocity: None,
+            max_torque: None,
+        });
+        let links = [("trunk", None), ("arm", Some("trunk")), ("tip", Some("arm")), ("tool", Some("tip"))];
+        let links = links.map(|(name, parent)| Link {
+            name: name.to_owned(),
+            body: None,
+            placement: Transform::identity(),
+            parent: parent.map(str::to_owned),
+        });
+        let sources = [("robot.urdf", "<robot/>"), ("robot.yaml", "drives: {}")];
+        Robot {
+            name: "made up".to_owned(),
+            joints: joints.to_vec(),
+            bodies: bodies.to_vec(),
+            spring_tables: Vec::new(),
+            gravity: Vec3::zero(),
+            fidelity: Fidelity::Complete,
+            links: links.to_vec(),
+            table: Vec::new(),
+            warnings: Vec::new(),
+            sources: sources.map(|(name, text)| SourceFile { name: name.to_owned(), text: text.to_owned() }).to_vec(),
+        }
+    }
+
+    #[test]
+    fn run_info_has_the_joints_of_one_degree_of_freedom_and_every_link() {
+        let info = RunInfo::new(&robot(), Fidelity::Complete);
+        assert!(info.floating);
+        assert_eq!(info.joints, ["turn", "slide"]);
+        assert_eq!(info.prismatic, [false, true]);
+        assert_eq!(info.elastic, [true, false]);
+        assert_eq!(info.gear_ratios, [Some(-105.0), None]);
+        let frames: Vec<_> = info.frames.iter().map(|(link, parent)| (link.as_str(), parent.as_str())).collect();
+        assert_eq!(frames, [("trunk", "world"), ("arm", "trunk"), ("tip", "arm"), ("tool", "tip")]);
+        assert_eq!(info.urdf, "<robot/>");
+        assert_eq!(info.attachments[1], ("robot.yaml".to_owned(), "drives: {}".to_owned()));
+    }
+
+    #[test]
+    fn rigid_models_have_no_motor_coordinates() {
+        assert_eq!(RunInfo::new(&robot(), Fidelity::Reduced).elastic, [true, false]);
+        assert_eq!(RunInfo::new(&robot(), Fidelity::Rigid).elastic, [false, false]);
+        assert_eq!(RunInfo::new(&robot(), Fidelity::RigidReflected).elastic, [false, false]);
+    }
+}

@@ -126,8 +126,7 @@ impl<W: Write> McapRecorder<W> {
                 data: Cow::Borrowed(content.as_bytes()),
             })?;
         }
-        let mut metadata: BTreeMap<_, _> = self.info.metadata.iter().cloned().collect();
-        metadata.insert("gyroflex_sim_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
+        let metadata = self.info.metadata.iter().cloned().collect();
         writer.write_metadata(&Metadata { name: "gyroflex".to_owned(), metadata })?;
         self.channels = Channels::add(&mut writer, self.info.gear_ratios.iter().any(Option::is_some))?;
         self.writer = Some(writer);

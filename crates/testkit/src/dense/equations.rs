@@ -113,6 +113,16 @@ impl Oracle<'_> {
         out
     }
 
+    /// `1 − e'` of every elastic transmission: the part of its torque that the motor feels; one elsewhere.
+    pub fn passed_by_transmissions(&self, s: &State) -> Vec<f64> {
+        let nv = self.nv();
+        let mut out = vec![1.0; nv];
+        for d in self.drives().iter().filter(|d| d.free >= nv) {
+            out[d.joint] = self.deflection(d, s).2;
+        }
+        out
+    }
+
     /// `τ_J` and the factor `1 − e'` with which the motor feels it, of an elastic transmission.
     pub(super) fn transmission(&self, d: &DriveAt<'_>, s: &State) -> (f64, f64) {
         let (deflection, rate, passed) = self.deflection(d, s);

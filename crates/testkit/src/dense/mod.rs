@@ -6,7 +6,11 @@
 //! vector and no lumping of inertias appears anywhere. Coordinates are `x = (q, theta)`, rotors *reflected*, which keeps
 //! the mass matrix well scaled. The equations are
 //!
-//!     M(q) xdd + h(q, xd) = Q,    M = Σ m J_vᵀJ_v + J_ωᵀ I J_ω,    h = Σ J_vᵀ m (a − g) + J_ωᵀ (I α + ω × I ω) at xdd = 0
+//! ```text
+//! M(q) xdd + h(q, xd) = Q
+//! M = Σ m J_vᵀ J_v + J_ωᵀ I J_ω
+//! h = Σ J_vᵀ m (a − g) + J_ωᵀ (I α + ω × I ω)   at xdd = 0
+//! ```
 //!
 //! and a rigid gear is the constraint `theta = q`, imposed by the constant projection `xd = P yd`.
 //!
@@ -23,13 +27,28 @@ pub use equations::{Accelerations, Matrices, Torques};
 use crate::State;
 use gyroflex::model::{DriveSpec, Fidelity, JointKind, RobotSpec, TransmissionSpec};
 use kinematics::Tree;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// The equations of motion of one robot in one of the four models.
 #[derive(Clone, Copy, Debug)]
 pub struct Oracle<'a> {
     spec: RobotSpec<'a>,
     fidelity: Fidelity,
+}
+
+/// Where a link is and how it moves, all in world axes.
+#[derive(Clone, Debug)]
+pub struct LinkMotion {
+    /// Takes coordinates of the link frame to world coordinates.
+    pub rotation: Matrix3<f64>,
+    /// Origin of the link frame.
+    pub position: Vector3<f64>,
+    /// Angular velocity.
+    pub omega: Vector3<f64>,
+    /// Velocity of the frame's origin.
+    pub velocity: Vector3<f64>,
+    /// `6 × nv`, angular rows first.
+    pub jacobian: DMatrix<f64>,
 }
 
 /// A drive and where its coordinates are.
@@ -59,6 +78,18 @@ impl<'a> Oracle<'a> {
     /// Number of link velocities.
     pub fn nv(&self) -> usize {
         self.spec.bodies.iter().map(|b| if b.joint == JointKind::Floating { 6 } else { 1 }).sum()
+    }
+
+    /// Motion of every link frame.
+    pub fn links(&self, s: &State) -> Vec<LinkMotion> {
+        let nv = self.nv();
+        let of = |f: kinematics::Frame| {
+            let mut jacobian = DMatrix::zeros(6, nv);
+            jacobian.rows_mut(0, 3).copy_from(&f.jac_ang.columns(0, nv));
+            jacobian.rows_mut(3, 3).copy_from(&f.jac_lin.columns(0, nv));
+            LinkMotion { rotation: f.rot, position: f.pos, omega: f.omega, velocity: f.vel, jacobian }
+        };
+        self.tree(s).links.into_iter().map(of).collect()
     }
 
     fn is_elastic(&self, drive: &DriveSpec) -> bool {

@@ -1,0 +1,18 @@
+//! One file a command.
+
+pub mod completions;
+pub mod eval;
+pub mod info;
+pub mod schema;
+
+use crate::failure::{Failure, warn};
+use gyroflex_sim::Robot;
+use gyroflex_sim::load::{self, LoadOptions};
+use std::path::Path;
+
+/// Loads a robot and says what was ignored or assumed.
+fn load(path: &Path, floating: bool, quiet: bool) -> Result<Robot, Failure> {
+    let robot = load::load(path, &LoadOptions { floating, ..LoadOptions::default() })?;
+    warn(&robot.warnings, quiet);
+    Ok(robot)
+}

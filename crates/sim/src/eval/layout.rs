@@ -1,0 +1,187 @@
+//! Which entry of an array belongs to which joint, and from which side of its gear it is given.
+
+use super::input::fault;
+use crate::error::Error;
+use crate::robot::Robot;
+use gyroflex::model::Model;
+
+/// Beyond this a quaternion is a mistake, not a rounded unit quaternion.
+const QUATERNION_TOLERANCE: f64 = 1e-6;
+/// Within this a quaternion is used as it is, bit for bit: its error shows in no result.
+const QUATERNION_ROUNDING: f64 = 1e-14;
+/// Entries of a floating root in a vector of velocities.
+const ROOT: usize = 6;
+
+/// The joints behind the entries of vectors.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    nq: usize,
+    floating: bool,
+    /// Name of the joint of every entry of a vector of velocities.
+    pub(super) joints: Vec<String>,
+    /// Gear ratio at each of these, 1 where there is no drive.
+    ratios: Vec<f64>,
+    has_elastic: bool,
+}
+
+impl Layout {
+    pub(super) fn of(robot: &Robot, model: &Model<f64>) -> Self {
+        let mut joints = Vec::with_capacity(model.nv());
+        let mut ratios = Vec::with_capacity(model.nv());
+        for (joint, body) in robot.joints.iter().zip(model.bodies()) {
+            for _ in 0..body.joint().nv() {
+                joints.push(joint.name.clone());
+                ratios.push(body.drive().map_or(1.0, |d| d.rotor.gear_ratio));
+            }
+        }
+        let has_elastic = model.bodies().iter().any(|b| b.is_elastic());
+        Self { nq: model.nq(), floating: robot.is_floating(), joints, ratios, has_elastic }
+    }
+
+    pub(super) fn nv(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Whether any joint has a motor coordinate of its own.
+    pub(super) fn has_elastic(&self) -> bool {
+        self.has_elastic
+    }
+
+    /// The order of a vector's entries, for an error message.
+    fn order(&self, root: &str) -> String {
+        let skip = if self.floating { ROOT } else { 0 };
+        let mut names: Vec<&str> = if self.floating && !root.is_empty() { vec![root] } else { Vec::new() };
+        names.extend(self.joints.iter().skip(skip).map(String::as_str));
+        names.join(", ")
+    }
+}
+
+/// Turns arrays as given into arrays as the algorithms take them, and back.
+pub(super) struct Arrays<'a> {
+    pub(super) layout: &'a Layout,
+    pub(super) motor_side: bool,
+}
+
+impl Arrays<'_> {
+    /// `q`; the quaternion of a floating root must be a unit quaternion and is freed of rounding to fewer digits.
+    pub(super) fn positions(&self, given: Option<&[f64]>) -> Result<Vec<f64>, Error> {
+        let Layout { nq, floating, .. } = *self.layout;
+        let order = || self.layout.order("x y z qx qy qz qw of the root");
+        let Some(given) = given else {
+            return Err(fault(
+                "q",
+                "the positions are missing",
+                format!("give {nq} numbers, in this order: {}", order()),
+            ));
+        };
+        if given.len() != nq {
+            let problem = format!("{} entries are given, but {nq} are expected", given.len());
+            return Err(fault("q", problem, format!("give one entry per coordinate, in this order: {}", order())));
+        }
+        finite("q", given)?;
+        let mut q = given.to_vec();
+        if floating {
+            let norm = q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
+            if (norm - 1.0).abs() > QUATERNION_TOLERANCE {
+                let problem = format!("the quaternion of the root has length {norm}, not 1");
+                return Err(fault("q", problem, "give a unit quaternion qx qy qz qw as entries 4 to 7"));
+            }
+            if (norm - 1.0).abs() > QUATERNION_ROUNDING {
+                q[3..7].iter_mut().for_each(|x| *x /= norm);
+            }
+        }
+        Ok(q)
+    }
+
+    /// A vector over all velocity coordinates; zeros where it is neither given nor needed.
+    pub(super) fn joints(&self, key: &str, given: Option<&[f64]>, needed: bool) -> Result<Vec<f64>, Error> {
+        self.vector(key, given, needed, "", false)
+    }
+
+    /// A vector over the motors, reflected to the link side; zeros where it is neither given nor needed.
+    pub(super) fn motors(&self, key: &str, given: Option<&[f64]>, needed: bool) -> Result<Vec<f64>, Error> {
+        let mut v = self.vector(key, given, needed, ", since the robot has elastic joints in this model", true)?;
+        if self.motor_side {
+            v.iter_mut().zip(&self.layout.ratios).for_each(|(x, n)| *x /= n);
+        }
+        Ok(v)
+    }
+
+    /// Generalised forces on the link side.
+    pub(super) fn loads(&self, key: &str, given: Option<&[f64]>) -> Result<Vec<f64>, Error> {
+        self.vector(key, given, false, "", true)
+    }
+
+    /// Motor torques, reflected to the link side.
+    pub(super) fn torques(&self, key: &str, given: &[f64]) -> Result<Vec<f64>, Error> {
+        let mut v = self.vector(key, Some(given), true, "", true)?;
+        if self.motor_side {
+            v.iter_mut().zip(&self.layout.ratios).for_each(|(x, n)| *x *= n);
+        }
+        Ok(v)
+    }
+
+    /// Reflected motor accelerations, as the user wants them.
+    pub(super) fn motors_out(&self, mut v: Vec<f64>) -> Vec<f64> {
+        if self.motor_side {
+            v.iter_mut().zip(&self.layout.ratios).for_each(|(x, n)| *x *= n);
+        }
+        v
+    }
+
+    /// Reflected motor torques, as the user wants them.
+    pub(super) fn torques_out(&self, mut v: Vec<f64>) -> Vec<f64> {
+        if self.motor_side {
+            v.iter_mut().zip(&self.layout.ratios).for_each(|(x, n)| *x /= n);
+        }
+        v
+    }
+
+    /// Gear ratios, 1 for all where everything is on the link side.
+    pub(super) fn ratio(&self, k: usize) -> f64 {
+        if self.motor_side { self.layout.ratios[k] } else { 1.0 }
+    }
+
+    /// `or_joints_only`: whether the six entries of a floating root may be left out.
+    fn vector(
+        &self,
+        key: &str,
+        given: Option<&[f64]>,
+        needed: bool,
+        why: &str,
+        or_joints_only: bool,
+    ) -> Result<Vec<f64>, Error> {
+        let nv = self.layout.nv();
+        let optional_root = or_joints_only && self.layout.floating;
+        let order = || self.layout.order("wx wy wz vx vy vz of the root");
+        let Some(given) = given else {
+            if needed {
+                let remedy = format!("give {nv} numbers, in this order: {}", order());
+                return Err(fault(key, format!("it is missing, and needed{why}"), remedy));
+            }
+            return Ok(vec![0.0; nv]);
+        };
+        finite(key, given)?;
+        if given.len() == nv {
+            return Ok(given.to_vec());
+        }
+        if optional_root && given.len() + ROOT == nv {
+            let mut v = vec![0.0; ROOT];
+            v.extend_from_slice(given);
+            return Ok(v);
+        }
+        let or = if optional_root { format!(", or {} without the root,", nv - ROOT) } else { String::new() };
+        let problem = format!("{} entries are given, but {nv}{or} are expected", given.len());
+        Err(fault(key, problem, format!("give one entry per joint, in this order: {}", order())))
+    }
+}
+
+/// Refuses infinities and NaN that a program passes; JSON has none.
+fn finite(key: &str, given: &[f64]) -> Result<(), Error> {
+    match given.iter().position(|x| !x.is_finite()) {
+        Some(i) => {
+            Err(fault(&format!("{key}[{i}]"), format!("{} is not a finite number", given[i]), "give a finite number"))
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,198 @@
+//! The dynamics calculator: one state in, accelerations or torques out, as JSON lines or as values.
+//!
+//! Arrays run over all joints in coordinate order. A line with `tau` asks for forward dynamics, one with `qdd` for inverse
+//! dynamics; with neither, only what the [`Options`] ask for is computed. Motor positions and torques are reflected to the
+//! link side unless [`Options::motor_side`] is set.
+
+mod input;
+mod json;
+mod layout;
+mod output;
+mod significance;
+mod wrench;
+
+pub use input::{Query, Wrench, WrenchAxes};
+pub use output::{Answer, EnergyAnswer};
+pub use significance::{Significance, significance};
+
+use crate::Dynamics;
+use crate::error::Error;
+use crate::robot::Robot;
+use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
+use gyroflex::model::Fidelity;
+use gyroflex::spatial::{Force, Transform, Vec3};
+use layout::{Arrays, Layout};
+
+/// What to compute, and how the numbers are given.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Which physics of the motors; `None` is the robot's own choice.
+    pub fidelity: Option<Fidelity>,
+    /// Whether to add `M`, `S` and `B` to the answer.
+    pub matrices: bool,
+    /// Whether to add the energies to the answer.
+    pub energy: bool,
+    /// Whether to add the significance of the gyroscopic coupling to the answer. It is always that of the complete model.
+    pub significance: bool,
+    /// Whether `theta`, `thetad`, `thetadd` and `tau` are rotor angles, velocities, accelerations and motor torques at
+    /// joints with a drive, in and out, with `S` and `B` accordingly. `tau_j` and `tau_ext` stay on the link side.
+    pub motor_side: bool,
+}
+
+/// A robot ready to answer any number of queries.
+#[derive(Clone, Debug)]
+pub struct Evaluator {
+    robot: Robot,
+    options: Options,
+    layout: Layout,
+    dynamics: Dynamics,
+    /// The complete model, where the significance is asked for.
+    complete: Option<Dynamics>,
+    poses: Vec<Transform<f64>>,
+    wrenches: Vec<Force<f64>>,
+}
+
+/// Which way a query goes.
+enum Task<'a> {
+    Forward(&'a [f64]),
+    Inverse(&'a [f64]),
+    Neither,
+}
+
+impl Evaluator {
+    /// Prepares a robot.
+    ///
+    /// # Errors
+    /// Names the joint that is not physical in the model asked for.
+    pub fn new(robot: Robot, options: Options) -> Result<Self, Error> {
+        let dynamics = Dynamics::new(robot.model(options.fidelity.unwrap_or(robot.fidelity))?);
+        let complete = match options.significance {
+            true => Some(Dynamics::new(robot.model(Fidelity::Complete)?)),
+            false => None,
+        };
+        let layout = Layout::of(&robot, &dynamics.model());
+        let poses = vec![Transform::identity(); robot.bodies.len()];
+        let wrenches = vec![Force::zero(); robot.bodies.len()];
+        Ok(Self { robot, options, layout, dynamics, complete, poses, wrenches })
+    }
+
+    /// The robot.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// Answers one line of JSON with one line of JSON, numbers in the shortest form that reads back to the same bits.
+    ///
+    /// # Errors
+    /// Names the key, and what it holds and should hold. The caller knows the file and the line.
+    pub fn evaluate_line(&mut self, line: &str) -> Result<String, Error> {
+        let answer = self.evaluate(&Query::parse(line)?)?;
+        serde_json::to_string(&answer).map_err(Error::from)
+    }
+
+    /// Answers one query.
+    ///
+    /// # Errors
+    /// Names the key that is missing, contradictory, of the wrong length or not finite, or the joint whose result is not finite.
+    pub fn evaluate(&mut self, query: &Query) -> Result<Answer, Error> {
+        let task = match (&query.tau, &query.qdd) {
+            (Some(_), Some(_)) => {
+                let problem = "`tau` asks for forward dynamics, `qdd` for inverse dynamics, and both are given";
+                return Err(input::fault("tau, qdd", problem, "leave one of the two out"));
+            }
+            (Some(tau), None) => Task::Forward(tau),
+            (None, Some(qdd)) => Task::Inverse(qdd),
+            (None, None) => Task::Neither,
+        };
+        self.refuse_what_has_no_effect(query, &task)?;
+        let arrays = Arrays { layout: &self.layout, motor_side: self.options.motor_side };
+
+        let q = arrays.positions(query.q.as_deref())?;
+        let moves = self.options.energy || !matches!(task, Task::Neither);
+        let qd = arrays.joints("qd", query.qd.as_deref(), moves)?;
+        let motors = moves && self.layout.has_elastic();
+        let theta = arrays.motors("theta", query.theta.as_deref(), motors)?;
+        let thetad = arrays.motors("thetad", query.thetad.as_deref(), motors)?;
+        let tau_ext = arrays.loads("tau_ext", query.tau_ext.as_deref())?;
+        let state = State { q: &q, qd: &qd, theta: &theta, thetad: &thetad };
+
+        let gravity = query.gravity.map_or(self.robot.gravity, Vec3::from);
+        self.dynamics.set_gravity(gravity);
+        self.dynamics.placements(&q, &mut self.poses)?;
+        wrench::gather(&self.robot, &query.wrenches, &self.poses, &mut self.wrenches)?;
+        let ext = External { tau: &tau_ext, wrenches: &self.wrenches };
+
+        let nv = self.layout.nv();
+        let zeros = || vec![0.0; nv];
+        let mut answer = Answer::default();
+        match task {
+            Task::Forward(tau) => {
+                let tau = arrays.torques("tau", tau)?;
+                let (mut qdd, mut thetadd, mut tau_j) = (zeros(), zeros(), zeros());
+                let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
+                self.dynamics.forward(state, &tau, ext, out)?;
+                answer.qdd = Some(qdd);
+                answer.thetadd = Some(arrays.motors_out(thetadd));
+                answer.tau_j = Some(tau_j);
+            }
+            Task::Inverse(qdd) => {
+                let qdd = arrays.joints("qdd", Some(qdd), true)?;
+                let thetadd = arrays.motors("thetadd", query.thetadd.as_deref(), motors)?;
+                let (mut tau_j, mut tau) = (zeros(), zeros());
+                let out = Inverse { tau_j: &mut tau_j, tau: &mut tau };
+                self.dynamics.inverse(state, Acceleration { qdd: &qdd, thetadd: &thetadd }, ext, out)?;
+                answer.tau_j = Some(tau_j);
+                answer.tau = Some(arrays.torques_out(tau));
+            }
+            Task::Neither => {}
+        }
+        if self.options.matrices {
+            let (mut m, mut s, mut b) = (vec![0.0; nv * nv], vec![0.0; nv * nv], zeros());
+            self.dynamics.mass_matrix(&q, &mut m)?;
+            self.dynamics.coupling(&q, &mut s)?;
+            self.dynamics.reflected_inertia(&mut b)?;
+            answer.set_matrices(&arrays, &m, &s, &b);
+        }
+        if self.options.energy {
+            answer.energy = Some(EnergyAnswer::from(self.dynamics.energy(state)?));
+        }
+        if let Some(complete) = &mut self.complete {
+            let qd = query.qd.as_ref().map(|_| qd.as_slice());
+            answer.significance = Some(significance(complete, &q, qd)?);
+        }
+        answer.check_finite(&self.layout)?;
+        Ok(answer)
+    }
+
+    /// What is given changes the answer, or is an error.
+    fn refuse_what_has_no_effect(&self, query: &Query, task: &Task) -> Result<(), Error> {
+        let o = &self.options;
+        let forward = matches!(task, Task::Forward(_));
+        if forward && query.thetadd.is_some() {
+            let problem = "motor accelerations are given, but forward dynamics computes them";
+            return Err(input::fault("thetadd", problem, "leave `thetadd` out, or give `qdd` instead of `tau`"));
+        }
+        if !matches!(task, Task::Neither) {
+            return Ok(());
+        }
+        if !(o.matrices || o.energy || o.significance) {
+            return Err(input::fault(
+                "tau, qdd",
+                "neither is given, so there is nothing to compute",
+                "give `tau` for forward dynamics or `qdd` for inverse dynamics, or ask for matrices, energy or significance",
+            ));
+        }
+        let without_effect = [
+            ("thetadd", query.thetadd.is_some()),
+            ("tau_ext", query.tau_ext.is_some()),
+            ("wrenches", !query.wrenches.is_empty()),
+        ];
+        match without_effect.iter().find(|(_, given)| *given) {
+            Some((key, _)) => {
+                let problem = "it has no effect without `tau` or `qdd`";
+                Err(input::fault(key, problem, format!("leave `{key}` out, or give `tau` or `qdd`")))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The answer to one query.
+
+use super::layout::{Arrays, Layout};
+use super::significance::Significance;
+use crate::error::{Error, ErrorKind};
+use gyroflex::dynamics::Energy;
+use serde::Serialize;
+
+/// What was asked for; the rest is `None` and not printed. Vectors have `nv` entries, matrices `nv` rows of `nv`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Answer {
+    /// Joint accelerations.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub qdd: Option<Vec<f64>>,
+    /// Motor accelerations; those of the joint where there is no elastic transmission.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thetadd: Option<Vec<f64>>,
+    /// Torque the transmission exerts, or must exert, on the joint; always on the link side [N m or N].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tau_j: Option<Vec<f64>>,
+    /// Torque the motor must exert [N m or N].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tau: Option<Vec<f64>>,
+    /// `M(q)`: inertia matrix of the link side; in the rigid models that of the whole robot.
+    #[serde(rename = "M", skip_serializing_if = "Option::is_none")]
+    pub m: Option<Vec<Vec<f64>>>,
+    /// `S(q)`: inertial coupling of links (rows) and motors (columns); zero where there is no elastic transmission.
+    #[serde(rename = "S", skip_serializing_if = "Option::is_none")]
+    pub s: Option<Vec<Vec<f64>>>,
+    /// `B`: rotor inertias on the diagonal; zero where there is no elastic transmission.
+    #[serde(rename = "B", skip_serializing_if = "Option::is_none")]
+    pub b: Option<Vec<Vec<f64>>>,
+    /// Energies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<EnergyAnswer>,
+    /// Significance of the gyroscopic coupling.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub significance: Option<Significance>,
+}
+
+/// Energies [J].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EnergyAnswer {
+    /// Of links and rotors.
+    pub kinetic: f64,
+    /// Of moving links and rotors in the field of gravity, zero for a mass at the world's origin.
+    pub gravity: f64,
+    /// In the springs of the transmissions.
+    pub elastic: f64,
+    /// The sum of the three.
+    pub total: f64,
+}
+
+impl From<Energy<f64>> for EnergyAnswer {
+    fn from(e: Energy<f64>) -> Self {
+        Self { kinetic: e.kinetic, gravity: e.gravity, elastic: e.elastic, total: e.kinetic + e.gravity + e.elastic }
+    }
+}
+
+impl Answer {
+    /// `M`, `S` and the diagonal of `B` as lists of rows, `S` and `B` seen from the side the user wants:
+    /// `M_ml = S N⁻¹`, `M_m = N⁻¹ B N⁻¹`.
+    pub(super) fn set_matrices(&mut self, arrays: &Arrays, m: &[f64], s: &[f64], b: &[f64]) {
+        let n = b.len();
+        let entry = |i: usize, j: usize, x: f64| if i == j { x / arrays.ratio(i) / arrays.ratio(i) } else { 0.0 };
+        self.m = Some(rows(n, |i, j| m[i * n + j]));
+        self.s = Some(rows(n, |i, j| s[i * n + j] / arrays.ratio(j)));
+        self.b = Some(rows(n, |i, j| entry(i, j, b[i])));
+    }
+
+    /// Nothing that is not a number leaves this house.
+    pub(super) fn check_finite(&self, layout: &Layout) -> Result<(), Error> {
+        let vectors = [("qdd", &self.qdd), ("thetadd", &self.thetadd), ("tau_j", &self.tau_j), ("tau", &self.tau)];
+        for (key, vector) in vectors {
+            if let Some(k) = vector.as_ref().and_then(|v| v.iter().position(|x| !x.is_finite())) {
+                return Err(not_finite(&format!("joint `{}`", layout.joints[k]), key));
+            }
+        }
+        for (key, matrix) in [("M", &self.m), ("S", &self.s), ("B", &self.b)] {
+            let wrong = |row: &Vec<f64>| row.iter().any(|x| !x.is_finite());
+            if let Some(k) = matrix.as_ref().and_then(|m| m.iter().position(wrong)) {
+                return Err(not_finite(&format!("joint `{}`", layout.joints[k]), key));
+            }
+        }
+        match self.energy {
+            Some(e) if !e.total.is_finite() => Err(not_finite("", "energy")),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+}
+
+pub(super) fn not_finite(element: &str, key: &str) -> Error {
+    Error {
+        kind: ErrorKind::Diverged,
+        file: String::new(),
+        element: element.to_owned(),
+        problem: format!("the result `{key}` is not a finite number"),
+        remedy: "check the size of the numbers given, and that the links beyond the joint have inertia".to_owned(),
+    }
+}

@@ -1,0 +1,86 @@
+//! The same for people.
+
+use super::{DriveInfo, Info, JointInfo};
+use std::fmt;
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.gravity;
+        writeln!(f, "{}: {} joints, {} links", self.name, self.joints.len(), self.links.len())?;
+        writeln!(f, "model {}, gravity [{x}, {y}, {z}] m/s²", self.model)?;
+        writeln!(f, "q has {} entries, qd and tau {}; moving mass {} kg", self.nq, self.nv, digits(self.moving_mass))?;
+
+        writeln!(f, "\nJoints, in coordinate order")?;
+        table(
+            f,
+            &["q", "joint", "type", "parent", "child", "limits", "link mass [kg]"],
+            self.joints.iter().map(joint),
+        )?;
+        writeln!(f, "\nDrives (link side where not said otherwise)")?;
+        let head = [
+            "joint",
+            "gear ratio",
+            "J motor [kg m²]",
+            "B [kg m²]",
+            "K [N m/rad]",
+            "D [N m s/rad]",
+            "rotor on",
+            "mass [kg]",
+        ];
+        table(f, &head, self.joints.iter().filter_map(|j| Some(drive(&j.name, j.drive.as_ref()?))))?;
+        writeln!(f, "\nFrames")?;
+        let frames = self.links.iter().map(|l| {
+            let moved_by = l.moved_by.clone().unwrap_or_else(|| "does not move".to_owned());
+            vec![l.name.clone(), l.parent.clone().unwrap_or_default(), moved_by]
+        });
+        table(f, &["link", "parent", "moved by"], frames)?;
+        writeln!(f, "\nWhere the numbers come from")?;
+        let entries = self
+            .table
+            .iter()
+            .map(|e| vec![e.joint.clone(), e.key.clone(), e.value.clone(), e.unit.to_owned(), e.source.clone()]);
+        table(f, &["joint", "key", "value", "unit", "source"], entries)?;
+        for (i, warning) in self.warnings.iter().enumerate() {
+            writeln!(f, "{}{warning}", if i == 0 { "\nWarnings\n  " } else { "  " })?;
+        }
+        Ok(())
+    }
+}
+
+fn joint(j: &JointInfo) -> Vec<String> {
+    let limits = j.limits.map_or_else(|| "-".to_owned(), |[a, b]| format!("{} … {}", digits(a), digits(b)));
+    let place = j.q_index.to_string();
+    vec![place, j.name.clone(), j.kind.clone(), j.parent.clone(), j.child.clone(), limits, digits(j.link_mass)]
+}
+
+fn drive(name: &str, d: &DriveInfo) -> Vec<String> {
+    let (stiffness, damping) = match &d.transmission {
+        None => ("rigid".to_owned(), "-".to_owned()),
+        Some(t) => (t.stiffness.map_or_else(|| "table".to_owned(), digits), digits(t.damping)),
+    };
+    let mass = d.rotor.mass.map_or_else(|| "in the link".to_owned(), digits);
+    let [ratio, inertia, reflected] = [d.gear_ratio, d.rotor.inertia, d.reflected_inertia].map(digits);
+    vec![name.to_owned(), ratio, inertia, reflected, stiffness, damping, d.rotor.mount_link.clone(), mass]
+}
+
+/// Six significant digits, which is more than a data sheet has; `--json` has all.
+fn digits(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
+}
+
+/// Columns as wide as their widest cell.
+fn table(f: &mut fmt::Formatter<'_>, head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> fmt::Result {
+    let rows: Vec<Vec<String>> = rows.collect();
+    if rows.is_empty() {
+        return writeln!(f, "  none");
+    }
+    let width = |c: usize| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0).max(head[c].chars().count());
+    let widths: Vec<usize> = (0..head.len()).map(width).collect();
+    let head: Vec<String> = head.iter().map(|h| (*h).to_owned()).collect();
+    for row in std::iter::once(&head).chain(&rows) {
+        let cells = row.iter().zip(&widths).map(|(cell, w)| format!("{cell:<w$}"));
+        writeln!(f, "  {}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
+    }
+    Ok(())
+}
