@@ -5,8 +5,8 @@ use crate::errors;
 use crate::workspace::{Pool, Workspace};
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex_sim::Robot;
-use gyroflex_sim::load::{LoadOptions, load};
 use gyroflex_sim::load::nearest::nearest;
+use gyroflex_sim::load::{LoadOptions, load};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -51,13 +51,7 @@ impl PyRobot {
     /// What of the file was ignored or assumed is issued as `RobotWarning` and kept in `warnings`.
     #[staticmethod]
     #[pyo3(signature = (path, *, floating=false, model=None, mimic=None))]
-    fn load(
-        py: Python<'_>,
-        path: PathBuf,
-        floating: bool,
-        model: Option<&str>,
-        mimic: Option<&str>,
-    ) -> PyResult<Self> {
+    fn load(py: Python<'_>, path: PathBuf, floating: bool, model: Option<&str>, mimic: Option<&str>) -> PyResult<Self> {
         let model = model.map(arguments::fidelity).transpose()?;
         let mimic = mimic.map(arguments::mimic).transpose()?;
         let options = LoadOptions { floating, model, mimic, ..LoadOptions::default() };

@@ -5,6 +5,7 @@ mod robot;
 mod state;
 
 pub use robot::RandomRobot;
+pub use state::random_point;
 
 use core::ops::RangeInclusive;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
