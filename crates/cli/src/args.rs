@@ -27,7 +27,6 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    #[allow(dead_code)]
     Simulate(Simulate),
     Info(Info),
     Eval(Eval),
@@ -60,7 +59,7 @@ pub struct Simulate {
     #[arg(long)]
     pub model: Option<ModelName>,
     /// Simulated time in seconds [default: as the scenario says]
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub duration: Option<f64>,
     /// Print the summary as JSON
     #[arg(long)]
@@ -178,4 +177,12 @@ pub enum SchemaName {
     Robot,
     /// A scenario
     Scenario,
+}
+
+/// A duration: finite and above zero.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err("give a number of seconds above zero".to_owned()),
+    }
 }

@@ -1,8 +1,10 @@
 //! The `gyroflex` command: arguments, progress, exit codes. The physics is in `gyroflex-sim`.
 
 mod args;
+mod builtin;
 mod commands;
 mod failure;
+mod report;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -11,7 +13,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let cli = Cli::parse();
     let done = match &cli.command {
-        Command::Simulate(_) => Ok(()),
+        Command::Simulate(args) => commands::simulate::run(args, cli.quiet),
         Command::Info(args) => commands::info::run(args, cli.quiet),
         Command::Eval(args) => commands::eval::run(args, cli.quiet),
         Command::Schema(args) => commands::schema::run(args),

@@ -20,7 +20,8 @@ mod classes {
 }
 
 /// The exception for an error of the simulator.
-pub(crate) fn raise(error: Error) -> PyErr {
+pub(crate) fn raise(error: impl Into<Error>) -> PyErr {
+    let error = error.into();
     let kind = error.kind;
     let fields = (error.problem, error.element, error.file, error.remedy);
     match kind {

@@ -9,7 +9,7 @@ use crate::reference::Point;
 use crate::robot::Robot;
 use crate::scenario::{Controller, Gains, RigidModel, fault};
 use gyroflex::dynamics::{Acceleration, External, Inverse, State};
-use gyroflex::model::{Fidelity, SizeError};
+use gyroflex::model::Fidelity;
 
 /// A controller and what it remembers.
 #[derive(Clone, Debug)]
@@ -94,7 +94,7 @@ impl Control {
         reference: &[Point],
         state: State<f64>,
         tau: &mut [f64],
-    ) -> Result<(), SizeError> {
+    ) -> Result<(), Error> {
         tau.fill(0.0);
         if let Law::None = self.law {
             return Ok(());
@@ -129,12 +129,7 @@ impl Control {
     }
 
     /// Static motor positions and torques at the reference, into `theta` and `feed_forward`.
-    fn hold_reference(
-        &mut self,
-        dynamics: &mut Dynamics,
-        reference: &[Point],
-        state: State<f64>,
-    ) -> Result<(), SizeError> {
+    fn hold_reference(&mut self, dynamics: &mut Dynamics, reference: &[Point], state: State<f64>) -> Result<(), Error> {
         if self.joints.floating {
             self.q[..7].copy_from_slice(&state.q[..7]);
         }

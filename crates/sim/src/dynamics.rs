@@ -19,8 +19,6 @@ pub struct Dynamics {
     rnea: Vec<RneaScratch<f64>>,
     crba: Vec<CrbaScratch<f64>>,
     moving: Vec<(Transform<f64>, Motion<f64>)>,
-    poses: Vec<Transform<f64>>,
-    twists: Vec<Motion<f64>>,
     work: Vec<f64>,
 }
 
@@ -37,8 +35,6 @@ impl Dynamics {
             rnea: vec![RneaScratch::new(); n],
             crba: vec![CrbaScratch::new(); n],
             moving: vec![(Transform::identity(), Motion::zero()); n],
-            poses: vec![Transform::identity(); n],
-            twists: vec![Motion::zero(); n],
             work: vec![0.0; work],
             model,
         }
@@ -79,9 +75,9 @@ impl Dynamics {
         tau: &[f64],
         ext: External<f64>,
         out: Forward<f64>,
-    ) -> Result<(), SizeError> {
+    ) -> Result<(), Error> {
         let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
-        dynamics::forward_dynamics(&self.model.view(), state, tau, ext, scratch, out)
+        Ok(dynamics::forward_dynamics(&self.model.view(), state, tau, ext, scratch, out)?)
     }
 
     /// Torques that make the robot accelerate as asked; see [`dynamics::rnea`].
@@ -94,77 +90,75 @@ impl Dynamics {
         accel: Acceleration<f64>,
         ext: External<f64>,
         out: Inverse<f64>,
-    ) -> Result<(), SizeError> {
-        dynamics::rnea(&self.model.view(), state, accel, ext, &mut self.rnea, out)
+    ) -> Result<(), Error> {
+        Ok(dynamics::rnea(&self.model.view(), state, accel, ext, &mut self.rnea, out)?)
     }
 
     /// `M_l(q)`, `nv × nv` by rows; see [`dynamics::crba`].
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn mass_matrix(&mut self, q: &[f64], m: &mut [f64]) -> Result<(), SizeError> {
-        dynamics::crba(&self.model.view(), q, &mut self.crba, m)
+    pub fn mass_matrix(&mut self, q: &[f64], m: &mut [f64]) -> Result<(), Error> {
+        Ok(dynamics::crba(&self.model.view(), q, &mut self.crba, m)?)
     }
 
     /// `S(q)`, `nv × nv` by rows; see [`dynamics::coupling`].
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn coupling(&mut self, q: &[f64], s: &mut [f64]) -> Result<(), SizeError> {
-        dynamics::coupling(&self.model.view(), q, &mut self.crba, s)
+    pub fn coupling(&mut self, q: &[f64], s: &mut [f64]) -> Result<(), Error> {
+        Ok(dynamics::coupling(&self.model.view(), q, &mut self.crba, s)?)
     }
 
     /// Diagonal of `B`, `nv` entries; see [`dynamics::reflected_inertia`].
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn reflected_inertia(&self, b: &mut [f64]) -> Result<(), SizeError> {
-        dynamics::reflected_inertia(&self.model.view(), b)
+    pub fn reflected_inertia(&self, b: &mut [f64]) -> Result<(), Error> {
+        Ok(dynamics::reflected_inertia(&self.model.view(), b)?)
     }
 
     /// Kinetic, gravity and elastic energy [J].
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn energy(&mut self, state: State<f64>) -> Result<Energy<f64>, SizeError> {
-        dynamics::energy(&self.model.view(), state, &mut self.moving)
+    pub fn energy(&mut self, state: State<f64>) -> Result<Energy<f64>, Error> {
+        Ok(dynamics::energy(&self.model.view(), state, &mut self.moving)?)
     }
 
     /// Power supplied and dissipated [W].
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn power(&mut self, state: State<f64>, tau: &[f64], ext: External<f64>) -> Result<Power<f64>, SizeError> {
-        dynamics::power(&self.model.view(), state, tau, ext, &mut self.moving)
+    pub fn power(&mut self, state: State<f64>, tau: &[f64], ext: External<f64>) -> Result<Power<f64>, Error> {
+        Ok(dynamics::power(&self.model.view(), state, tau, ext, &mut self.moving)?)
     }
 
-    /// Transform from the world to every body's link frame.
+    /// Transform from the world to every body's link frame, one entry per body; see [`dynamics::placements`].
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn placements(&mut self, q: &[f64]) -> Result<&[Transform<f64>], SizeError> {
-        dynamics::placements(&self.model.view(), q, &mut self.poses)?;
-        Ok(&self.poses)
+    pub fn placements(&self, q: &[f64], out: &mut [Transform<f64>]) -> Result<(), Error> {
+        Ok(dynamics::placements(&self.model.view(), q, out)?)
     }
 
-    /// Spatial velocity of every body in its link frame, angular part first.
+    /// Spatial velocity of every body in its link frame, angular part first, one entry per body; see [`dynamics::velocities`].
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn velocities(&mut self, q: &[f64], qd: &[f64]) -> Result<&[Motion<f64>], SizeError> {
-        dynamics::velocities(&self.model.view(), q, qd, &mut self.twists)?;
-        Ok(&self.twists)
+    pub fn velocities(&self, q: &[f64], qd: &[f64], out: &mut [Motion<f64>]) -> Result<(), Error> {
+        Ok(dynamics::velocities(&self.model.view(), q, qd, out)?)
     }
 
     /// One step of the classical Runge-Kutta scheme; see [`integrate::rk4`].
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn rk4(&mut self, state: StateMut<f64>, tau: &[f64], ext: External<f64>, step: f64) -> Result<(), SizeError> {
+    pub fn rk4(&mut self, state: StateMut<f64>, tau: &[f64], ext: External<f64>, step: f64) -> Result<(), Error> {
         let view = self.model.view();
         let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
         let work = &mut self.work[..integrate::rk4_len(&view)];
-        integrate::rk4(&view, state, tau, ext, step, scratch, work)
+        Ok(integrate::rk4(&view, state, tau, ext, step, scratch, work)?)
     }
 
     /// One step of semi-implicit Euler; see [`integrate::semi_implicit_euler`].
@@ -177,11 +171,11 @@ impl Dynamics {
         tau: &[f64],
         ext: External<f64>,
         step: f64,
-    ) -> Result<(), SizeError> {
+    ) -> Result<(), Error> {
         let view = self.model.view();
         let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
         let work = &mut self.work[..integrate::euler_len(&view)];
-        integrate::semi_implicit_euler(&view, state, tau, ext, step, scratch, work)
+        Ok(integrate::semi_implicit_euler(&view, state, tau, ext, step, scratch, work)?)
     }
 }
 

@@ -1,8 +1,9 @@
 //! Static equilibrium: the torques that hold a robot at rest, and the motor positions at which its transmissions carry them.
 
 use crate::dynamics::Dynamics;
+use crate::error::Error;
 use gyroflex::dynamics::{Acceleration, External, Inverse, State};
-use gyroflex::model::{Drive, Knot, SizeError, Spring};
+use gyroflex::model::{Drive, Knot, Spring};
 
 /// Solves for equilibrium, again and again without allocating.
 #[derive(Clone, Debug)]
@@ -30,7 +31,7 @@ impl Equilibrium {
         ext: External<f64>,
         theta: &mut [f64],
         tau: &mut [f64],
-    ) -> Result<(), SizeError> {
+    ) -> Result<(), Error> {
         let rest = self.rest.as_slice();
         let state = State { q, qd: rest, theta: rest, thetad: rest };
         let accel = Acceleration { qdd: rest, thetadd: rest };

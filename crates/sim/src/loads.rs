@@ -7,7 +7,6 @@ use crate::load::yaml::Keys;
 use crate::robot::Robot;
 use crate::scenario::{Wrench, WrenchFrame, fault};
 use gyroflex::dynamics::External;
-use gyroflex::model::SizeError;
 use gyroflex::spatial::{Force, Transform, Vec3};
 
 /// One wrench of the scenario, on its body.
@@ -30,6 +29,7 @@ struct Load {
 pub struct Loads {
     loads: Vec<Load>,
     wrenches: Vec<Force<f64>>,
+    placements: Vec<Transform<f64>>,
 }
 
 impl Loads {
@@ -69,7 +69,7 @@ impl Loads {
             });
         }
         let bodies = if loads.is_empty() { 0 } else { robot.bodies.len() };
-        Ok(Self { loads, wrenches: vec![Force::zero(); bodies] })
+        Ok(Self { loads, wrenches: vec![Force::zero(); bodies], placements: vec![Transform::identity(); bodies] })
     }
 
     /// Whether there are none at all.
@@ -93,25 +93,22 @@ impl Loads {
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn update(&mut self, dynamics: &mut Dynamics, q: &[f64]) -> Result<(), SizeError> {
+    pub fn update(&mut self, dynamics: &Dynamics, q: &[f64]) -> Result<(), Error> {
         if self.loads.is_empty() {
             return Ok(());
         }
-        self.apply(dynamics.placements(q)?);
-        Ok(())
-    }
-
-    fn apply(&mut self, placements: &[Transform<f64>]) {
+        dynamics.placements(q, &mut self.placements)?;
         self.wrenches.fill(Force::zero());
         for load in self.loads.iter().filter(|l| l.active) {
             let turn = |v: Vec3<f64>| match load.frame {
-                WrenchFrame::World => placements[load.body].rot * v,
+                WrenchFrame::World => self.placements[load.body].rot * v,
                 WrenchFrame::Link => v,
             };
             let (force, torque) = (turn(load.force), turn(load.torque));
             // About the origin of the link frame: the couple, and the moment of the force.
             self.wrenches[load.body] += Force { ang: torque + load.point.cross(force), lin: force };
         }
+        Ok(())
     }
 
     /// What they are now, for the algorithms.

@@ -165,7 +165,7 @@ impl ODE<f64, Vec<f64>> for Problem<'_> {
             let state = State { q: &b.q, qd: &b.qd, theta: &b.theta, thetad: &b.thetad };
             let out = Forward { qdd: &mut b.qdd, thetadd: &mut b.thetadd, tau_j: &mut b.tau_j };
             inner.dynamics.forward(state, self.tau, inner.loads.external(), out)?;
-            position_rate(&inner.dynamics.model(), &b.q, &b.qd, &mut b.q_rate)
+            Ok(position_rate(&inner.dynamics.model(), &b.q, &b.qd, &mut b.q_rate)?)
         });
         if ok.is_err() {
             // Cannot happen with buffers of the model's own lengths; not a number stops the run with an error.

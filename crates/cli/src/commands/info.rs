@@ -7,7 +7,10 @@ use gyroflex_sim::info;
 
 pub fn run(args: &Info, quiet: bool) -> Result<(), Failure> {
     // The report has the warnings itself.
-    let robot = load(&args.robot, args.floating, true)?;
+    let mut robot = load(&args.robot, args.floating, true)?;
+    if quiet {
+        robot.warnings.clear();
+    }
     let report = info::Info::of(&robot)?;
     if args.json { print(&report.to_json()?) } else { print(report.to_string().trim_end()) }
 }

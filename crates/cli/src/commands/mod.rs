@@ -4,6 +4,7 @@ pub mod completions;
 pub mod eval;
 pub mod info;
 pub mod schema;
+pub mod simulate;
 
 use crate::failure::{Failure, warn};
 use gyroflex_sim::Robot;

@@ -2,7 +2,10 @@
 
 mod text;
 
+use crate::coordinates::Coordinates;
+use crate::dynamics::Dynamics;
 use crate::error::Error;
+use crate::modes::{Modes, modes};
 use crate::robot::Robot;
 use gyroflex::model::{BodySpec, DriveSpec, Friction, MountSpec, SpringSpec, TransmissionSpec};
 use serde::Serialize;
@@ -28,6 +31,9 @@ pub struct Info {
     pub links: Vec<LinkInfo>,
     /// Every number of every joint, and where it came from.
     pub table: Vec<EntryInfo>,
+    /// Natural modes of the transmissions at the zero pose, unloaded, in the robot's own model; `None` without elastic joints
+    /// in that model, or where the inertia matrix has no inverse.
+    pub modes: Option<Modes>,
     /// What was ignored or assumed.
     pub warnings: Vec<String>,
 }
@@ -182,6 +188,7 @@ impl Info {
             joints: joints.collect(),
             links: robot.links.iter().map(|l| link(robot, l)).collect(),
             table: robot.table.iter().map(entry).collect(),
+            modes: modes_at_zero(robot)?,
             warnings: robot.warnings.iter().map(ToString::to_string).collect(),
         })
     }
@@ -193,6 +200,17 @@ impl Info {
     pub fn to_json(&self) -> Result<String, Error> {
         serde_json::to_string_pretty(self).map_err(Error::from)
     }
+}
+
+fn modes_at_zero(robot: &Robot) -> Result<Option<Modes>, Error> {
+    let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
+    let mut q = vec![0.0; dynamics.nq()];
+    if robot.is_floating() {
+        q[6] = 1.0;
+    }
+    let theta = vec![0.0; dynamics.nv()];
+    let found = modes(&mut dynamics, &Coordinates::of(robot), &q, &theta).ok();
+    Ok(found.filter(|m| !m.modes.is_empty()))
 }
 
 fn moving_rotor_mass(body: &BodySpec) -> f64 {

@@ -1,6 +1,7 @@
 //! The same for people.
 
 use super::{DriveInfo, Info, JointInfo};
+use crate::modes::Mode;
 use std::fmt;
 
 impl fmt::Display for Info {
@@ -28,6 +29,10 @@ impl fmt::Display for Info {
             "mass [kg]",
         ];
         table(f, &head, self.joints.iter().filter_map(|j| Some(drive(&j.name, j.drive.as_ref()?))))?;
+        if let Some(modes) = &self.modes {
+            writeln!(f, "\nModes of the transmissions at the zero pose, the fastest first")?;
+            table(f, &["frequency [Hz]", "moves most"], modes.modes.iter().rev().map(mode))?;
+        }
         writeln!(f, "\nFrames")?;
         let frames = self.links.iter().map(|l| {
             let moved_by = l.moved_by.clone().unwrap_or_else(|| "does not move".to_owned());
@@ -51,6 +56,10 @@ fn joint(j: &JointInfo) -> Vec<String> {
     let limits = j.limits.map_or_else(|| "-".to_owned(), |[a, b]| format!("{} … {}", digits(a), digits(b)));
     let place = j.q_index.to_string();
     vec![place, j.name.clone(), j.kind.clone(), j.parent.clone(), j.child.clone(), limits, digits(j.link_mass)]
+}
+
+fn mode(m: &Mode) -> Vec<String> {
+    vec![digits(m.frequency), format!("{} of {}", if m.on_motor { "motor" } else { "link" }, m.joint)]
 }
 
 fn drive(name: &str, d: &DriveInfo) -> Vec<String> {

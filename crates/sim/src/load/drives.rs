@@ -109,12 +109,12 @@ fn drive(
     }
     let overruled = file.override_urdf && file.gear_ratio.is_some();
     let ratio_tag = agreed("gear ratio", merge.joint, &tags.gear_ratio, overruled)?;
-    if let (Some(yaml), Some(tag)) = (file.gear_ratio, ratio_tag) {
-        if !file.override_urdf && !same(yaml, tag.value) {
-            let problem = format!("the gear ratio is {yaml} here, but {} at {}", tag.value, tag.source);
-            let remedy = "correct the wrong one, or say `override_urdf: true` beside it if this one is meant to count";
-            return Err(merge.fault("gear_ratio", problem, remedy));
-        }
+    if let (Some(yaml), Some(tag), false) = (file.gear_ratio, ratio_tag, overruled)
+        && !same(yaml, tag.value)
+    {
+        let problem = format!("the gear ratio is {yaml} here, but {} at {}", tag.value, tag.source);
+        let remedy = "correct the wrong one, or say `override_urdf: true` beside it if this one is meant to count";
+        return Err(merge.fault("gear_ratio", problem, remedy));
     }
 
     let inertia = merge.choose("rotor.inertia", "kg m²", rotor.inertia, inertia_tag).unwrap_or_default();

@@ -29,8 +29,8 @@ impl XmlText {
         for _ in 0..16 {
             match Document::parse_with_options(&this.text, parsing()) {
                 Err(roxmltree::Error::UnknownNamespace(prefix, _)) if !prefix.is_empty() => {
-                    let Some(root) = this.text.find("<robot") else { break };
-                    this.text.insert_str(root + "<robot".len(), &format!(" xmlns:{prefix}=\"{UNDECLARED}:{prefix}\""));
+                    let Some(end) = end_of_root_name(&this.text) else { break };
+                    this.text.insert_str(end, &format!(" xmlns:{prefix}=\"{UNDECLARED}:{prefix}\""));
                 }
                 _ => break,
             }
@@ -41,7 +41,8 @@ impl XmlText {
     /// Parses the text.
     pub(crate) fn parse(&self) -> Result<Xml<'_>, Error> {
         let document = Document::parse_with_options(&self.text, parsing()).map_err(|e| self.not_well_formed(&e))?;
-        let xml = Xml { document, file: &self.file, skipped_lines: self.skipped_lines };
+        let line_ends = self.text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i).collect();
+        let xml = Xml { document, file: &self.file, skipped_lines: self.skipped_lines, line_ends };
         xml.check_depth()?;
         xml.check_root()?;
         Ok(xml)
@@ -69,6 +70,23 @@ impl XmlText {
     }
 }
 
+/// Where the name of the outermost element ends, past comments and declarations.
+fn end_of_root_name(text: &str) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        at += text[at..].find('<')?;
+        let rest = &text[at..];
+        let close = if rest.starts_with("<!--") {
+            "-->"
+        } else if rest.starts_with("<?") {
+            "?>"
+        } else {
+            return rest.find(|c: char| c.is_whitespace() || c == '/' || c == '>').map(|end| at + end);
+        };
+        at += rest.find(close)?;
+    }
+}
+
 fn parsing<'input>() -> ParsingOptions<'input> {
     ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() }
 }
@@ -80,6 +98,8 @@ pub(crate) struct Xml<'a> {
     /// Name of the file, for messages.
     pub(crate) file: &'a str,
     skipped_lines: u32,
+    /// Offsets of the line breaks: the parser itself would count them anew for every question.
+    line_ends: Vec<usize>,
 }
 
 impl<'a> Xml<'a> {
@@ -95,7 +115,8 @@ impl<'a> Xml<'a> {
 
     /// File and line of a node.
     pub(crate) fn at(&self, node: Node<'_, '_>) -> String {
-        let row = self.document.text_pos_at(node.range().start).row + self.skipped_lines;
+        let start = node.range().start;
+        let row = self.line_ends.partition_point(|end| *end < start) + 1 + self.skipped_lines as usize;
         format!("{}:{row}", self.file)
     }
 

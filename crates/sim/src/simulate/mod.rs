@@ -44,6 +44,8 @@ pub struct Simulation {
     half_step: Vec<f64>,
     halfway: Vec<f64>,
     warnings: Vec<Warning>,
+    /// How many of them were there before the run.
+    setup_warnings: usize,
 }
 
 impl Simulation {
@@ -90,10 +92,12 @@ impl Simulation {
             modes,
             initial,
             warnings,
+            setup_warnings: 0,
         };
         simulation.check_step()?;
         simulation.check_controller();
         simulation.check_wrenches();
+        simulation.setup_warnings = simulation.warnings.len();
         Ok(simulation)
     }
 

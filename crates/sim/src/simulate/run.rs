@@ -75,6 +75,7 @@ impl Simulation {
         self.state.clone_from(&self.initial);
         self.tau.fill(0.0);
         self.control.reset();
+        self.warnings.truncate(self.setup_warnings);
         let n = self.joints.len();
         let mut done = Progress { t: 0.0, steps: 0, interrupted: false, tally: Tally::new(n), beyond: vec![false; n] };
         for instant in self.clock() {

@@ -8,8 +8,7 @@ use crate::record::Sample;
 use crate::reference::Point;
 use crate::robot::Robot;
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
-use gyroflex::model::SizeError;
-use gyroflex::spatial::{Force, Transform, Vec3};
+use gyroflex::spatial::{Force, Motion, Transform, Vec3};
 
 /// Fills samples without allocating.
 #[derive(Clone, Debug)]
@@ -20,6 +19,7 @@ pub(super) struct Sampler {
     /// The robot without gravity, for torques of the rotors' couples alone.
     weightless: Option<Dynamics>,
     poses: Vec<Transform<f64>>,
+    velocities: Vec<Motion<f64>>,
     couples: Vec<Force<f64>>,
     qdd: Vec<f64>,
     thetadd: Vec<f64>,
@@ -102,6 +102,7 @@ impl Sampler {
             rotors,
             weightless,
             poses: vec![Transform::identity(); bodies],
+            velocities: vec![Motion::zero(); bodies],
             couples: vec![Force::zero(); bodies],
             qdd: vec![0.0; nv],
             thetadd: vec![0.0; nv],
@@ -124,7 +125,7 @@ impl Sampler {
         tau: &[f64],
         loads: &mut Loads,
         reference: &[Point],
-    ) -> Result<(), SizeError> {
+    ) -> Result<(), Error> {
         loads.update(dynamics, state.q)?;
         let out = Forward { qdd: &mut self.qdd, thetadd: &mut self.thetadd, tau_j: &mut self.tau_j };
         dynamics.forward(state, tau, loads.external(), out)?;
@@ -172,13 +173,13 @@ impl Sampler {
 
     /// `S θ̈ + C₁ θ̇`: each rotor asks of its carrier the couple `N J (θ̈ n + ω × θ̇ n)` (PHYSICS: rotor couples); the joints
     /// carry it to the base as inverse dynamics at rest carries the opposite external couple.
-    fn gyroscopic_torque(&mut self, dynamics: &mut Dynamics, state: State<f64>) -> Result<(), SizeError> {
+    fn gyroscopic_torque(&mut self, dynamics: &Dynamics, state: State<f64>) -> Result<(), Error> {
         self.torque.fill(0.0);
         let Some(weightless) = &mut self.weightless else { return Ok(()) };
-        let velocities = dynamics.velocities(state.q, state.qd)?;
+        dynamics.velocities(state.q, state.qd, &mut self.velocities)?;
         self.couples.fill(Force::zero());
         for rotor in &self.rotors {
-            let omega = velocities[rotor.mount].ang;
+            let omega = self.velocities[rotor.mount].ang;
             let (rate, acceleration) = (state.thetad[rotor.v], self.thetadd[rotor.v]);
             let couple = rotor.axis.scale(acceleration) + omega.cross(rotor.axis).scale(rate);
             self.couples[rotor.mount] += Force::couple(couple.scale(-rotor.momentum));
@@ -191,7 +192,7 @@ impl Sampler {
     }
 
     /// `r_s = 2 q̇ᵀ S q̇ / q̇ᵀ M_l q̇` (Zhao et al. 2015, eq. 12), zero at rest.
-    fn significance(&mut self, dynamics: &mut Dynamics, state: State<f64>) -> Result<(), SizeError> {
+    fn significance(&mut self, dynamics: &mut Dynamics, state: State<f64>) -> Result<(), Error> {
         let nv = state.qd.len();
         dynamics.mass_matrix(state.q, &mut self.m)?;
         dynamics.coupling(state.q, &mut self.s)?;
@@ -205,8 +206,8 @@ impl Sampler {
     }
 
     /// Pose of every link in its parent.
-    fn frames(&mut self, dynamics: &mut Dynamics, q: &[f64]) -> Result<(), SizeError> {
-        self.poses.copy_from_slice(dynamics.placements(q)?);
+    fn frames(&mut self, dynamics: &Dynamics, q: &[f64]) -> Result<(), Error> {
+        dynamics.placements(q, &mut self.poses)?;
         for (i, link) in self.links.iter().enumerate() {
             let from_world = |l: &LinkFrame| l.body.map_or(l.placement, |b| l.placement.after(self.poses[b]));
             let own = from_world(link);

@@ -1,0 +1,131 @@
+//! `gyroflex simulate`: a scenario in, a log and a summary out.
+
+use crate::args::Simulate;
+use crate::builtin;
+use crate::failure::{Failure, print, say, warn};
+use crate::report::Report;
+use gyroflex_sim::error::{Error, ErrorKind};
+use gyroflex_sim::load::{self, Disk, FileSource, LoadOptions};
+use gyroflex_sim::record::{CsvRecorder, McapRecorder, TeeRecorder};
+use gyroflex_sim::{ScenarioFile, Simulation};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+pub fn run(args: &Simulate, quiet: bool) -> Result<(), Failure> {
+    let (mut simulation, duration) = prepare(args, quiet)?;
+    let log = log_path(args);
+    for written in std::iter::once(&log).chain(&args.csv) {
+        spare_the_input(written, args)?;
+    }
+    let stop = stop_flag(quiet);
+    let info = simulation.run_info();
+    let mut recorder = TeeRecorder::new().with(McapRecorder::create(&log, info.clone())?);
+    if let Some(csv) = &args.csv {
+        recorder = recorder.with(CsvRecorder::create(csv, info)?);
+    }
+
+    let known = simulation.warnings().len();
+    let bar = progress_bar(quiet);
+    let result = simulation.run(&mut recorder, &mut |t| {
+        bar.set_position((t / duration * STEPS_OF_BAR as f64) as u64);
+        if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    bar.finish_and_clear();
+    warn(&simulation.warnings()[known..], quiet);
+    let summary = result.inspect_err(|e| {
+        if e.kind == ErrorKind::Diverged {
+            say(&format!("log up to there: {}", log.display()));
+        }
+    })?;
+
+    let interrupted = summary.interrupted;
+    let report = Report { summary: &summary, log: &log, csv: args.csv.as_deref() };
+    print(&if args.json { report.json()? } else { report.text() })?;
+    if interrupted {
+        say(&format!("interrupted at t = {} s; the log is complete up to there", summary.end_time));
+        return Err(Failure::Interrupted);
+    }
+    if !quiet {
+        say(&format!("next: open {} in Foxglove (https://app.foxglove.dev), Rerun or PlotJuggler", log.display()));
+    }
+    Ok(())
+}
+
+/// Everything up to the first step.
+fn prepare(args: &Simulate, quiet: bool) -> Result<(Simulation, f64), Failure> {
+    let (files, path): (&dyn FileSource, &Path) = match &args.scenario {
+        Some(path) => (&Disk, path),
+        None => (&builtin::FILES, Path::new(builtin::SCENARIO)),
+    };
+    let mut file = ScenarioFile::load(files, path)?;
+    if let Some(duration) = args.duration {
+        file.scenario.duration = duration;
+    }
+    let mut options = LoadOptions::default();
+    if let Some(model) = args.model {
+        options.model = Some(model.into());
+        file.scenario.model = None;
+    }
+    let robot = load::load_from(files, &file.robot_path(), &options)?;
+    warn(&robot.warnings, quiet);
+    let simulation = Simulation::new(&robot, &file)?;
+    warn(simulation.warnings(), quiet);
+    Ok((simulation, file.scenario.duration))
+}
+
+/// The log beside the user, not beside the scenario: that folder may not be his.
+fn log_path(args: &Simulate) -> PathBuf {
+    match (&args.output, &args.scenario) {
+        (Some(output), _) => output.clone(),
+        (None, None) => PathBuf::from(builtin::LOG),
+        (None, Some(scenario)) => {
+            PathBuf::from(scenario.file_stem().unwrap_or(scenario.as_os_str())).with_extension("mcap")
+        }
+    }
+}
+
+/// Refuses to write over the scenario, or log and CSV over each other.
+fn spare_the_input(written: &Path, args: &Simulate) -> Result<(), Error> {
+    let same = |other: &Path| match (written.canonicalize(), other.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => written == other,
+    };
+    let problem = if args.scenario.as_deref().is_some_and(same) {
+        "it is the scenario, and would be overwritten"
+    } else if args.csv.as_deref() == args.output.as_deref() && args.csv.is_some() {
+        "it cannot be the MCAP log and the CSV file at once"
+    } else {
+        return Ok(());
+    };
+    Err(Error {
+        kind: ErrorKind::Io,
+        file: written.display().to_string(),
+        element: "output".to_owned(),
+        problem: problem.to_owned(),
+        remedy: "name another file".to_owned(),
+    })
+}
+
+/// Becomes true on Ctrl-C, or when the system asks the program to end.
+fn stop_flag(quiet: bool) -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let raised = Arc::clone(&flag);
+    let installed = ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed));
+    if let (Err(e), false) = (installed, quiet) {
+        say(&format!("warning: Ctrl-C will not complete the log: {e}"));
+    }
+    flag
+}
+
+const STEPS_OF_BAR: u64 = 1000;
+
+/// A bar where somebody can see it.
+fn progress_bar(quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(STEPS_OF_BAR), target);
+    let style = ProgressStyle::with_template("simulating {bar:40} {percent:>3} %  {eta} left");
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

@@ -1,0 +1,11 @@
+//! Laws of scenarios and simulations.
+
+mod arm;
+mod controllers;
+mod equilibria;
+mod integration;
+mod logs;
+mod refusals;
+mod samples;
+mod scenario_files;
+mod trajectories;
