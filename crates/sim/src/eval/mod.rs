@@ -48,8 +48,8 @@ pub struct Evaluator {
     dynamics: Dynamics,
     /// The complete model, where the significance is asked for.
     complete: Option<Dynamics>,
-    poses: Vec<Transform<f64>>,
     wrenches: Vec<Force<f64>>,
+    poses: Vec<Transform<f64>>,
 }
 
 /// Which way a query goes.
@@ -71,9 +71,9 @@ impl Evaluator {
             false => None,
         };
         let layout = Layout::of(&robot, &dynamics.model());
-        let poses = vec![Transform::identity(); robot.bodies.len()];
         let wrenches = vec![Force::zero(); robot.bodies.len()];
-        Ok(Self { robot, options, layout, dynamics, complete, poses, wrenches })
+        let poses = vec![Transform::identity(); robot.bodies.len()];
+        Ok(Self { robot, options, layout, dynamics, complete, wrenches, poses })
     }
 
     /// The robot.

@@ -120,7 +120,12 @@ pub fn simulation(robot: &Robot, yaml: &str) -> Simulation {
 
 /// Runs to the end and keeps everything.
 pub fn run(robot: &Robot, yaml: &str) -> (Summary, Vec<Sample>, Simulation) {
-    let mut simulation = simulation(robot, yaml);
+    run_file(robot, &scenario(yaml))
+}
+
+/// The same for a scenario from a file.
+pub fn run_file(robot: &Robot, file: &ScenarioFile) -> (Summary, Vec<Sample>, Simulation) {
+    let mut simulation = Simulation::new(robot, file).unwrap_or_else(|e| panic!("{e}"));
     let mut memory = MemoryRecorder::new(simulation.run_info());
     let summary = simulation.run(&mut memory, &mut |_| ControlFlow::Continue(())).unwrap_or_else(|e| panic!("{e}"));
     (summary, memory.samples().to_vec(), simulation)

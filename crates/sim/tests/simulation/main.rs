@@ -6,6 +6,7 @@ mod equilibria;
 mod integration;
 mod logs;
 mod refusals;
+mod robots;
 mod samples;
 mod scenario_files;
 mod trajectories;
