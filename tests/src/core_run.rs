@@ -5,6 +5,7 @@ use gyroflex::dynamics::{
     State, aba, coupling, crba, energy, forward_dynamics, forward_in_joint_space, matrix_len, power, reflected_inertia,
     rnea,
 };
+use gyroflex::integrate::{StateMut, rk4, rk4_len};
 use gyroflex::model::{Fidelity, Model, RobotSpec, SizeError};
 use gyroflex::spatial::{Force, Motion, Transform};
 use gyroflex_testkit::dense::{Accelerations, Torques};
@@ -74,6 +75,22 @@ impl<T: Real> Core<T> {
         let (mut qdd, mut thetadd, mut tau_j) = (vec![nan(); nv], vec![nan(); nv], vec![nan(); nv]);
         self.call(s, |x| run(x, Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j }));
         Accelerations { qdd: double(&qdd), thetadd: double(&thetadd), tau_j: double(&tau_j) }
+    }
+
+    /// `steps` steps of `rk4` with the state's motor torques and loads held.
+    pub fn integrate(&self, s: &Point, step: f64, steps: usize) -> Point {
+        let (model, mut x) = (self.model(), Inputs::<T>::new(s));
+        let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
+        let mut matrix = vec![nan(); matrix_len(&model)];
+        let mut work = vec![nan(); rk4_len(&model)];
+        for _ in 0..steps {
+            let state = StateMut { q: &mut x.q, qd: &mut x.qd, theta: &mut x.theta, thetad: &mut x.thetad };
+            let ext = External { tau: &x.tau_ext, wrenches: &x.wrenches };
+            let scratch = ForwardScratch { bodies: &mut bodies, matrix: &mut matrix };
+            rk4(&model, state, &x.tau, ext, T::from_f64(step), scratch, &mut work).expect("slices fit the model");
+        }
+        let [q, qd, theta, thetad] = [x.q, x.qd, x.theta, x.thetad].map(|v| double(&v));
+        Point { q, qd, theta, thetad, ..s.clone() }
     }
 
     /// `rnea`.

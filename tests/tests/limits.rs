@@ -1,7 +1,5 @@
 //! What the models become when transmissions stiffen or rotors vanish.
 
-use gyroflex::dynamics::{AbaScratch, External, ForwardScratch};
-use gyroflex::integrate::{StateMut, rk4, rk4_len};
 use gyroflex::model::{Fidelity, Friction, RotorBody, SpringSpec, TransmissionError, TransmissionSpec};
 use gyroflex_testkit::State;
 use gyroflex_testkit::dense::Oracle;
@@ -99,19 +97,7 @@ fn stiffness_to_infinity_approaches_the_rigid_gear() {
 
 /// Where the robot is after 50 ms under constant torques.
 fn end_position(robot: &RandomRobot, fidelity: Fidelity, start: &State) -> Vec<f64> {
-    let core = Core::<f64>::new(&robot.spec(), fidelity);
-    let model = core.model();
-    let mut s = start.clone();
-    let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
-    let mut matrix = vec![0.0; model.nv() * model.nv()];
-    let mut work = vec![0.0; rk4_len(&model)];
-    let matrix_len = gyroflex::dynamics::matrix_len(&model);
-    for _ in 0..10_000 {
-        let state = StateMut { q: &mut s.q, qd: &mut s.qd, theta: &mut s.theta, thetad: &mut s.thetad };
-        let scratch = ForwardScratch { bodies: &mut bodies, matrix: &mut matrix[..matrix_len] };
-        rk4(&model, state, &s.tau, External::none(), 5e-6, scratch, &mut work).expect("slices fit the model");
-    }
-    s.q
+    Core::<f64>::new(&robot.spec(), fidelity).integrate(start, 5e-6, 10_000).q
 }
 
 /// With rigid gears, and rotors that are part of their links, nothing is left of vanishing rotors: plain rigid dynamics.

@@ -108,6 +108,30 @@ fn matrices_gravity_velocity_terms_and_energies() {
     }
 }
 
+/// Unforced motion; springs ask for a small step, rigid gears do not.
+#[test]
+fn simulation() {
+    for case in Case::of_kind("simulation") {
+        let times = numbers(&case.json["times"]);
+        for (fidelity, label) in MODELS {
+            let core = Core::<f64>::new(&case.spec(), fidelity);
+            let want = &case.json["expected"][label.replace("_consistent", "")];
+            let mut s = case.state(&case.json);
+            for (k, window) in times.windows(2).enumerate() {
+                let steps = if fidelity.is_elastic() { 5000 } else { 100 };
+                s = core.integrate(&s, (window[1] - window[0]) / steps as f64, steps);
+                let context = format!("{} {label} at {}", case.name, window[1]);
+                assert_close("q", &context, &s.q, &numbers(&want["q"][k + 1]), 1e-9);
+                assert_close("qd", &context, &s.qd, &numbers(&want["qd"][k + 1]), 1e-8);
+                if fidelity.is_elastic() {
+                    let theta = case.reflect(&numbers(&want["theta_m"][k + 1]));
+                    assert_close("theta", &context, &s.theta, &theta, 1e-9);
+                }
+            }
+        }
+    }
+}
+
 fn friction_of_links(case: &Case, s: &State) -> Vec<f64> {
     let read = |(a, v): (&Value, &f64)| {
         let f = &a["link_friction"];

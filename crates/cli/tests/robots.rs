@@ -46,7 +46,8 @@ fn info_lists_every_joint_in_coordinate_order_with_its_drive() {
     assert_eq!(joints[0]["drive"]["gear_ratio"], -105.0);
     assert_eq!(joints[1]["drive"]["transmission"]["stiffness"], 352_800.0);
     assert!(joints[3]["drive"]["transmission"].is_null(), "joint 4 has a rigid gear");
-    assert!(joints.iter().enumerate().all(|(i, j)| j["v_index"] == i && j["type"] == "revolute"));
+    let turns = |j: &Value| j["type"] == "revolute" || j["type"] == "continuous";
+    assert!(joints.iter().enumerate().all(|(i, j)| j["v_index"] == i && turns(j)));
 
     let urdf = project("robots/puma560/puma560.urdf").display().to_string();
     let ended = gyroflex(&here, &["info", &urdf, "--json", "--floating"]);

@@ -59,7 +59,7 @@ drives:
     transmission: {stiffness: 8.0e3, damping: 4.0}
     friction: {motor: {viscous: 1.0e-4, coulomb: 0.02}}
   elbow:
-    rotor: {inertia: 1.0e-4, mass: 0.5, mount: {link: upper, xyz: [0.1, 0, 0], axis: [1, 0, 0]}}
+    rotor: {inertia: 1.0e-4, mass: 0.5, mount: {link: upper, xyz: [0.1, 0, 0], axis: [0.6, 0, 0.8]}}
     gear_ratio: -80.0
     transmission: {stiffness: 3.0e3, damping: 2.0, cubic: 1.0e5}
 """

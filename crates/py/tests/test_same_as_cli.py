@@ -16,11 +16,20 @@ ROBOTS = sorted(PROJECT.glob("robots/*/robot.yaml"))
 STATES = 10
 
 
+def run_eval(binary: Path, robot: Path, text: str, *options: str) -> subprocess.CompletedProcess[str]:
+    command = [binary, "eval", robot, "--state", "-", *options]
+    return subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+
+
+def load(path: Path, *, floating: bool = False) -> gyroflex.Robot:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", gyroflex.RobotWarning)
+        return gyroflex.Robot.load(path, floating=floating)
+
+
 def evaluate(binary: Path, robot: Path, lines: list[dict[str, list[float]]], *options: str) -> list[dict[str, list]]:
     """What `gyroflex eval` answers to each line."""
-    text = "".join(json.dumps(line) + "\n" for line in lines)
-    command = [binary, "eval", robot, "--state", "-", *options]
-    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+    done = run_eval(binary, robot, "".join(json.dumps(line) + "\n" for line in lines), *options)
     assert done.returncode == 0, done.stderr
     return [json.loads(line) for line in done.stdout.splitlines()]
 
@@ -31,13 +40,18 @@ def assert_same_bits(ours: np.ndarray, theirs: list) -> None:
     assert ours.tobytes() == theirs_array.tobytes()
 
 
-@pytest.mark.parametrize("floating", [False, True], ids=["fixed", "floating"])
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("path", ROBOTS, ids=[p.parent.name for p in ROBOTS])
-def test_eval_gives_the_same_bits(binary: Path, path: Path, model: str, floating: bool) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", gyroflex.RobotWarning)
-        robot = gyroflex.Robot.load(path, floating=floating)
+def test_eval_gives_the_same_bits(binary: Path, path: Path, model: str) -> None:
+    compare(binary, path, load(path), model)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_eval_gives_the_same_bits_of_a_floating_robot(binary: Path, arm_file: Path, model: str) -> None:
+    compare(binary, arm_file, load(arm_file, floating=True), model, "--floating")
+
+
+def compare(binary: Path, path: Path, robot: gyroflex.Robot, model: str, *options: str) -> None:
     rng = np.random.default_rng(11)
     states = [random_state(robot, rng) for _ in range(STATES)]
     tau, qdd, thetadd, tau_ext = rng.normal(size=(4, STATES, robot.nv))
@@ -45,8 +59,7 @@ def test_eval_gives_the_same_bits(binary: Path, path: Path, model: str, floating
     inverse = [s | {"qdd": qdd[i], "thetadd": thetadd[i]} for i, s in enumerate(states)]
 
     lines = [{key: value.tolist() for key, value in query.items()} for query in forward + inverse]
-    options = ["--model", model, "--matrices", *(["--floating"] if floating else [])]
-    answers = evaluate(binary, path, lines, *options)
+    answers = evaluate(binary, path, lines, "--model", model, "--matrices", *options)
     assert len(answers) == 2 * STATES
     for query, answer in zip(forward, answers[:STATES], strict=True):
         result = robot.forward_dynamics(**query, model=model)
@@ -67,7 +80,15 @@ def test_there_are_robots_to_compare() -> None:
 def test_python_names_joints_as_info_does(binary: Path) -> None:
     for path in ROBOTS:
         done = subprocess.run([binary, "info", path, "--json"], capture_output=True, text=True, check=True)
-        names = [joint["name"] for joint in json.loads(done.stdout)["joints"]]
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", gyroflex.RobotWarning)
-            assert names == list(gyroflex.Robot.load(path).joint_names)
+        assert [joint["name"] for joint in json.loads(done.stdout)["joints"]] == list(load(path).joint_names)
+
+
+def test_both_refuse_a_robot_in_the_same_words(binary: Path, arm_file: Path, tmp_path: Path) -> None:
+    path = tmp_path / "robot.urdf"
+    urdf = (arm_file.parent / "elastic_arm.urdf").read_text()
+    path.write_text(urdf.replace('<mass value="0.6"/>', '<mass value="-0.6"/>'))
+    with pytest.raises(gyroflex.ModelError) as caught:
+        load(path)
+    done = run_eval(binary, path, "")
+    assert done.returncode == 1
+    assert caught.value.problem in done.stderr

@@ -23,7 +23,10 @@ pub fn run(args: &Eval, quiet: bool) -> Result<(), Failure> {
     let evaluator = Evaluator::new(robot, options)?;
     if args.state.as_os_str() != "-" {
         let name = args.state.display().to_string();
-        let file = File::open(&args.state).map_err(|e| unreadable(name.clone(), &e))?;
+        let file = File::open(&args.state).map_err(|e| Error {
+            remedy: "check the path and its permissions; `-` is standard input".to_owned(),
+            ..unreadable(name.clone(), &e)
+        })?;
         return answer(evaluator, BufReader::new(file), &name);
     }
     let stdin = io::stdin();

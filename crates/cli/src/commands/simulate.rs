@@ -69,7 +69,15 @@ fn prepare(args: &Simulate, quiet: bool) -> Result<(Simulation, f64), Failure> {
         options.model = Some(model.into());
         file.scenario.model = None;
     }
-    let robot = load::load_from(files, &file.robot_path(), &options)?;
+    let robot_path = file.robot_path();
+    if !files.exists(&robot_path) {
+        let problem = format!("there is no file `{}`", robot_path.display());
+        return Err(file
+            .keys
+            .error("robot", problem, "give the path of a robot YAML or a URDF, relative to the scenario")
+            .into());
+    }
+    let robot = load::load_from(files, &robot_path, &options)?;
     warn(&robot.warnings, quiet);
     let simulation = Simulation::new(&robot, &file)?;
     warn(simulation.warnings(), quiet);

@@ -102,13 +102,11 @@ impl RobotSpec<'_> {
     fn check_rotors_fit(&self, i: usize) -> Result<(), Defect> {
         let mut rest = about_com(&self.bodies[i].inertia);
         let mut contained = false;
-        for drive in self.bodies.iter().filter_map(|b| b.drive.as_ref()) {
+        for drive in self.carried_rotors(i).filter(|d| d.rotor.body.is_none()) {
             let mount = &drive.rotor.mount;
-            if mount.body == Some(i) && drive.rotor.body.is_none() {
-                let n = mount.placement.rotation() * mount.axis;
-                rest = rest - SymMat3::outer(n).scale(drive.rotor.inertia);
-                contained = true;
-            }
+            let n = mount.placement.rotation() * mount.axis;
+            rest = rest - SymMat3::outer(n).scale(drive.rotor.inertia);
+            contained = true;
         }
         let rounding = FILE_ROUNDING * trace(&about_com(&self.bodies[i].inertia));
         if contained && !is_positive_semidefinite(&rest, rounding) { Err(Defect::RotorLargerThanLink) } else { Ok(()) }
@@ -117,38 +115,38 @@ impl RobotSpec<'_> {
     /// Every joint must move some mass; the last joint of a branch, some inertia about its own axis.
     fn check_something_to_move(&self, i: usize) -> Result<(), Defect> {
         let body = &self.bodies[i];
-        let geared = |b: &BodySpec| b.drive.is_some_and(|d| matches!(d.transmission, TransmissionSpec::Rigid));
-        if geared(body) {
+        if is_rigidly_geared(body) {
             return Ok(());
         }
-        let mut leaf = true;
-        let mut mass = 0.0;
-        let mut moment = 0.0;
-        for (k, other) in self.bodies.iter().enumerate().skip(i) {
-            if self.is_at_or_beyond(k, i) {
-                leaf &= k == i;
-                mass += other.inertia.mass;
-                let r = other.inertia.rotational;
-                moment += r.xx + r.yy + r.zz;
-            }
-            for drive in other.drive.iter() {
-                if let (Some(rotor), Some(mount)) = (drive.rotor.body, drive.rotor.mount.body)
-                    && self.is_at_or_beyond(mount, i)
-                {
-                    mass += rotor.mass;
-                    moment += rotor.transverse_inertia;
-                }
-            }
-        }
-        let own = body.inertia.rotational * body.axis;
+        let rotors = || self.carried_rotors(i).filter_map(|d| d.rotor.body);
+        let mass = body.inertia.mass + rotors().map(|r| r.mass).sum::<f64>();
+        let turns = |m: &SymMat3<f64>| body.axis.dot(*m * body.axis) > 0.0;
+        let last = !self.bodies.iter().any(|b| b.parent == Some(i));
         let moves = match body.joint {
-            JointKind::Prismatic => mass > 0.0,
-            JointKind::Revolute if leaf => own.dot(body.axis) > 0.0,
-            JointKind::Revolute => moment > 0.0,
-            JointKind::Floating if leaf => mass > 0.0 && is_positive_definite(&about_com(&body.inertia)),
-            JointKind::Floating => mass > 0.0 && moment > 0.0,
+            JointKind::Prismatic => mass > 0.0 || self.beyond(i, |b| b.inertia.mass > 0.0),
+            JointKind::Revolute if last => turns(&body.inertia.rotational),
+            JointKind::Revolute => has_moment(body) || rotors().next().is_some() || self.beyond(i, has_moment),
+            JointKind::Floating if last => mass > 0.0 && is_positive_definite(&about_com(&body.inertia)),
+            JointKind::Floating => {
+                (mass > 0.0 || self.beyond(i, |b| b.inertia.mass > 0.0))
+                    && (has_moment(body) || self.beyond(i, has_moment))
+            }
         };
         if moves { Ok(()) } else { Err(Defect::NothingToMove) }
+    }
+
+    /// Whether some body beyond joint `i` has what it takes. A child's joint of the same kind is checked by itself, so the
+    /// whole branch is searched just where the kinds alternate.
+    fn beyond(&self, i: usize, has: impl Fn(&BodySpec) -> bool) -> bool {
+        let kind = self.bodies[i].joint;
+        let mut children = self.bodies.iter().filter(|b| b.parent == Some(i));
+        children.any(|b| has(b) || (b.joint == kind && !is_rigidly_geared(b)))
+            || (i + 1..self.bodies.len()).any(|k| has(&self.bodies[k]) && self.is_at_or_beyond(k, i))
+    }
+
+    /// The drives whose rotors body `i` carries.
+    fn carried_rotors(&self, i: usize) -> impl Iterator<Item = &DriveSpec> {
+        self.bodies.iter().filter_map(|b| b.drive.as_ref()).filter(move |d| d.rotor.mount.body == Some(i))
     }
 
     /// Whether body `k` is body `root` or moved by its joint.
@@ -161,6 +159,14 @@ impl RobotSpec<'_> {
         }
         k == root
     }
+}
+
+fn is_rigidly_geared(body: &BodySpec) -> bool {
+    body.drive.is_some_and(|d| matches!(d.transmission, TransmissionSpec::Rigid))
+}
+
+fn has_moment(body: &BodySpec) -> bool {
+    trace(&body.inertia.rotational) > 0.0
 }
 
 fn check_finite(what: &'static str, numbers: &[f64]) -> Result<(), Defect> {

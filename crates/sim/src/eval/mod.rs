@@ -20,7 +20,7 @@ use crate::error::Error;
 use crate::robot::Robot;
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex::model::Fidelity;
-use gyroflex::spatial::{Force, Vec3};
+use gyroflex::spatial::{Force, Transform, Vec3};
 use layout::{Arrays, Layout};
 
 /// What to compute, and how the numbers are given.
@@ -49,6 +49,7 @@ pub struct Evaluator {
     /// The complete model, where the significance is asked for.
     complete: Option<Dynamics>,
     wrenches: Vec<Force<f64>>,
+    poses: Vec<Transform<f64>>,
 }
 
 /// Which way a query goes.
@@ -71,7 +72,8 @@ impl Evaluator {
         };
         let layout = Layout::of(&robot, &dynamics.model());
         let wrenches = vec![Force::zero(); robot.bodies.len()];
-        Ok(Self { robot, options, layout, dynamics, complete, wrenches })
+        let poses = vec![Transform::identity(); robot.bodies.len()];
+        Ok(Self { robot, options, layout, dynamics, complete, wrenches, poses })
     }
 
     /// The robot.
@@ -116,7 +118,8 @@ impl Evaluator {
 
         let gravity = query.gravity.map_or(self.robot.gravity, Vec3::from);
         self.dynamics.set_gravity(gravity);
-        wrench::gather(&self.robot, &query.wrenches, self.dynamics.placements(&q)?, &mut self.wrenches)?;
+        self.dynamics.placements(&q, &mut self.poses)?;
+        wrench::gather(&self.robot, &query.wrenches, &self.poses, &mut self.wrenches)?;
         let ext = External { tau: &tau_ext, wrenches: &self.wrenches };
 
         let nv = self.layout.nv();

@@ -20,6 +20,7 @@ pub mod nearest;
 mod pose;
 pub mod source;
 mod standard;
+mod text;
 mod tree;
 mod xml;
 pub mod yaml;
@@ -119,7 +120,7 @@ fn assemble(urdf: &Urdf<'_>, drives: Option<&Drives<'_>>, options: &LoadOptions)
         });
     }
     let file = file_name(urdf.path);
-    let text = xml::XmlText::new(urdf.text, &file);
+    let text = text::XmlText::new(urdf.text, &file);
     let xml = text.parse()?;
     let tree = tree::read(&xml)?;
     let mut warnings = ignored::report(&xml);
