@@ -139,8 +139,7 @@ impl Simulation {
         let scheme = self.file.scenario.integrator;
         if let Some(adaptive) = &mut self.adaptive {
             let (state, go_on) = (self.state.view_mut(), &mut |into: f64| progress(t + into));
-            return match adaptive.advance(&scheme, &mut self.dynamics, &mut self.loads, state, &self.tau, length, go_on)
-            {
+            return match adaptive.advance(&mut self.dynamics, &mut self.loads, state, &self.tau, length, go_on) {
                 Ok(steps) => Ok((steps, None)),
                 Err(Halt::Stopped) => Ok((0, Some(t))),
                 Err(Halt::Stuck { at, why }) => Err(self.diverged(self.fastest_joint(), t + at, why)),
