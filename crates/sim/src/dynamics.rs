@@ -19,8 +19,6 @@ pub struct Dynamics {
     rnea: Vec<RneaScratch<f64>>,
     crba: Vec<CrbaScratch<f64>>,
     moving: Vec<(Transform<f64>, Motion<f64>)>,
-    poses: Vec<Transform<f64>>,
-    twists: Vec<Motion<f64>>,
     work: Vec<f64>,
 }
 
@@ -37,8 +35,6 @@ impl Dynamics {
             rnea: vec![RneaScratch::new(); n],
             crba: vec![CrbaScratch::new(); n],
             moving: vec![(Transform::identity(), Motion::zero()); n],
-            poses: vec![Transform::identity(); n],
-            twists: vec![Motion::zero(); n],
             work: vec![0.0; work],
             model,
         }
@@ -142,18 +138,16 @@ impl Dynamics {
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn placements(&mut self, q: &[f64]) -> Result<&[Transform<f64>], Error> {
-        dynamics::placements(&self.model.view(), q, &mut self.poses)?;
-        Ok(&self.poses)
+    pub fn placements(&self, q: &[f64], out: &mut [Transform<f64>]) -> Result<(), Error> {
+        Ok(dynamics::placements(&self.model.view(), q, out)?)
     }
 
     /// Spatial velocity of every body in its link frame, angular part first, one entry per body; see [`dynamics::velocities`].
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn velocities(&mut self, q: &[f64], qd: &[f64]) -> Result<&[Motion<f64>], Error> {
-        dynamics::velocities(&self.model.view(), q, qd, &mut self.twists)?;
-        Ok(&self.twists)
+    pub fn velocities(&self, q: &[f64], qd: &[f64], out: &mut [Motion<f64>]) -> Result<(), Error> {
+        Ok(dynamics::velocities(&self.model.view(), q, qd, out)?)
     }
 
     /// One step of the classical Runge-Kutta scheme; see [`integrate::rk4`].

@@ -7,7 +7,7 @@ use crate::load::yaml::Keys;
 use crate::robot::Robot;
 use crate::scenario::{Wrench, WrenchFrame, fault};
 use gyroflex::dynamics::External;
-use gyroflex::spatial::{Force, Vec3};
+use gyroflex::spatial::{Force, Transform, Vec3};
 
 /// One wrench of the scenario, on its body.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +29,7 @@ struct Load {
 pub struct Loads {
     loads: Vec<Load>,
     wrenches: Vec<Force<f64>>,
+    placements: Vec<Transform<f64>>,
 }
 
 impl Loads {
@@ -68,7 +69,7 @@ impl Loads {
             });
         }
         let bodies = if loads.is_empty() { 0 } else { robot.bodies.len() };
-        Ok(Self { loads, wrenches: vec![Force::zero(); bodies] })
+        Ok(Self { loads, wrenches: vec![Force::zero(); bodies], placements: vec![Transform::identity(); bodies] })
     }
 
     /// Whether there are none at all.
@@ -92,15 +93,15 @@ impl Loads {
     ///
     /// # Errors
     /// A slice that does not fit the model.
-    pub fn update(&mut self, dynamics: &mut Dynamics, q: &[f64]) -> Result<(), Error> {
+    pub fn update(&mut self, dynamics: &Dynamics, q: &[f64]) -> Result<(), Error> {
         if self.loads.is_empty() {
             return Ok(());
         }
-        let placements = dynamics.placements(q)?;
+        dynamics.placements(q, &mut self.placements)?;
         self.wrenches.fill(Force::zero());
         for load in self.loads.iter().filter(|l| l.active) {
             let turn = |v: Vec3<f64>| match load.frame {
-                WrenchFrame::World => placements[load.body].rot * v,
+                WrenchFrame::World => self.placements[load.body].rot * v,
                 WrenchFrame::Link => v,
             };
             let (force, torque) = (turn(load.force), turn(load.torque));

@@ -179,7 +179,7 @@ impl Simulation {
             *half = 0.5 * h * v;
         }
         integrate(&self.dynamics.model(), q, &self.half_step, &mut self.halfway)?;
-        self.loads.update(&mut self.dynamics, &self.halfway)?;
+        self.loads.update(&self.dynamics, &self.halfway)?;
         Ok(())
     }
 

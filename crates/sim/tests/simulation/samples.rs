@@ -66,8 +66,9 @@ fn frames_lead_from_the_world_to_every_link() {
         let yaml = "duration: 0.1\ninitial: {qd: {joint2: 1, joint3: -1}}\nlog: {rate: 100}";
         let (_, samples, simulation) = run(&robot, yaml);
         let s = &samples[samples.len() - 1];
-        let mut dynamics = Dynamics::new(robot.model(robot.fidelity).unwrap());
-        let placements = dynamics.placements(&simulation.state().q).unwrap();
+        let dynamics = Dynamics::new(robot.model(robot.fidelity).unwrap());
+        let mut placements = vec![Transform::identity(); robot.bodies.len()];
+        dynamics.placements(&simulation.state().q, &mut placements).unwrap();
         let mut pose = Transform::identity();
         for (i, link) in robot.links.iter().enumerate() {
             pose = s.frames[i].after(pose);
@@ -141,8 +142,12 @@ fn work_of_a_constant_force_is_force_times_way() {
             "duration: 0.3\ninitial: {{q: [0.3, -0.4, 0.8]}}\nlog: {{rate: 10}}\n{wrench}\nintegrator: {method}"
         );
         let (_, samples, simulation) = run(&arm(3), &yaml);
-        let mut dynamics = Dynamics::new(arm(3).model(Fidelity::Complete).unwrap());
-        let mut at = |q: &[f64]| dynamics.placements(q).unwrap()[2].point(point);
+        let dynamics = Dynamics::new(arm(3).model(Fidelity::Complete).unwrap());
+        let at = |q: &[f64]| {
+            let mut placements = [Transform::identity(); 3];
+            dynamics.placements(q, &mut placements).unwrap();
+            placements[2].point(point)
+        };
         let way = at(&simulation.state().q) - at(&simulation.initial_state().q);
         let energy = |i: usize| samples[i].kinetic_energy + samples[i].gravity_energy + samples[i].elastic_energy;
         let gained = energy(samples.len() - 1) - energy(0);
