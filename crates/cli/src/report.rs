@@ -41,6 +41,7 @@ impl Report<'_> {
             let numbers = [j.rms_tracking_error, j.peak_tracking_error, j.peak_torque].map(|x| format!("{x:.4e}"));
             line([&j.name, &numbers[0], &numbers[1], &numbers[2], &format!("{:.1} %", 100.0 * j.saturation)]);
         }
+        out.push_str("  (errors in rad, torques in N m on the link side; m and N for sliding joints)\n");
         if let Some(mode) = &s.fastest_mode {
             let side = if mode.on_motor { "motor" } else { "link" };
             let _ = writeln!(out, "fastest mode {:.1} Hz, {side} of {}", mode.frequency, mode.joint);

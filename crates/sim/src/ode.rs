@@ -9,6 +9,7 @@ use differential_equations::status::Status;
 use gyroflex::dynamics::{Forward, State};
 use gyroflex::integrate::{StateMut, normalize, position_rate};
 use std::cell::RefCell;
+use std::ops::ControlFlow;
 
 /// An adaptive scheme that remembers the step it came to.
 ///
@@ -16,6 +17,7 @@ use std::cell::RefCell;
 /// floating root's quaternion is integrated as four numbers and brought back to unit length.
 #[derive(Clone, Debug)]
 pub(crate) struct Adaptive {
+    scheme: Integrator,
     /// Places of the elastic motors in `theta`.
     elastic: Vec<usize>,
     y: Vec<f64>,
@@ -37,15 +39,17 @@ struct Buffers {
     tau_j: Vec<f64>,
 }
 
-/// Why an interval could not be crossed, and at which time into it [s].
+/// Why an interval was not crossed.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Stuck {
-    pub(crate) at: f64,
-    pub(crate) why: &'static str,
+pub(crate) enum Halt {
+    /// The scheme cannot go on from this time into the interval [s].
+    Stuck { at: f64, why: &'static str },
+    /// The caller asked to stop; the state is that of the interval's start.
+    Stopped,
 }
 
 impl Adaptive {
-    pub(crate) fn new(dynamics: &Dynamics) -> Self {
+    pub(crate) fn new(scheme: Integrator, dynamics: &Dynamics) -> Self {
         let (nq, nv) = (dynamics.nq(), dynamics.nv());
         let model = dynamics.model();
         let elastic: Vec<usize> = model.bodies().iter().filter(|b| b.is_elastic()).map(|b| b.v_index()).collect();
@@ -60,19 +64,20 @@ impl Adaptive {
             thetadd: zeros(nv),
             tau_j: zeros(nv),
         };
-        Self { y: zeros(nq + nv + 2 * elastic.len()), elastic, step: 0.0, buffers }
+        Self { scheme, y: zeros(nq + nv + 2 * elastic.len()), elastic, step: 0.0, buffers }
     }
 
-    /// Moves the state over `length` seconds under held torques, and returns the number of steps.
+    /// Moves the state over `length` seconds under held torques, and returns the number of steps. Now and then `go_on` is told
+    /// the time into the interval [s] and may stop it.
     pub(crate) fn advance(
         &mut self,
-        scheme: &Integrator,
         dynamics: &mut Dynamics,
         loads: &mut Loads,
         state: StateMut<f64>,
         tau: &[f64],
         length: f64,
-    ) -> Result<u64, Stuck> {
+        go_on: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<u64, Halt> {
         self.pack(&state);
         let step = if self.step > 0.0 { self.step.min(length) } else { 0.0 };
         let problem = Problem {
@@ -80,23 +85,23 @@ impl Adaptive {
             tau,
             inner: RefCell::new(Inner { dynamics: &mut *dynamics, loads, buffers: &mut self.buffers }),
         };
-        let result = match *scheme {
+        let result = match self.scheme {
             Integrator::Dop853 { rtol, atol } => {
                 let method = ExplicitRungeKutta::dop853().rtol(rtol).atol(atol).h0(step).max_steps(MAX_STEPS);
-                cross(method, &problem, &mut self.y, length, step)
+                cross(method, &problem, &mut self.y, length, step, go_on)
             }
             Integrator::Kvaerno5 { rtol, atol } => {
                 let method = DiagonallyImplicitRungeKutta::kvaerno745().rtol(rtol).atol(atol).h0(step);
                 let method =
                     method.newton_tol(newton_tolerance(atol)).h_min(0.0).max_steps(MAX_STEPS).max_rejects(MAX_STEPS);
-                cross(method, &problem, &mut self.y, length, step)
+                cross(method, &problem, &mut self.y, length, step, go_on)
             }
             Integrator::Dopri5 { rtol, atol } => {
                 let method = ExplicitRungeKutta::dopri5().rtol(rtol).atol(atol).h0(step).max_steps(MAX_STEPS);
-                cross(method, &problem, &mut self.y, length, step)
+                cross(method, &problem, &mut self.y, length, step, go_on)
             }
             Integrator::SemiImplicitEuler { .. } | Integrator::Rk4 { .. } => {
-                return Err(Stuck { at: 0.0, why: "the scheme has a fixed step" });
+                return Err(Halt::Stuck { at: 0.0, why: "the scheme has a fixed step" });
             }
         };
         let (steps, next) = result?;
@@ -187,13 +192,17 @@ fn cross<M: OrdinaryNumericalMethod<f64, Vec<f64>>>(
     y: &mut Vec<f64>,
     length: f64,
     step: f64,
-) -> Result<(u64, f64), Stuck> {
-    let stuck = |at, why| Err(Stuck { at, why });
+    go_on: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<(u64, f64), Halt> {
+    let stuck = |at, why| Err(Halt::Stuck { at, why });
     if y.iter().any(|x| !x.is_finite()) || method.init(problem, 0.0, length, y).is_err() {
         return stuck(0.0, "the state left the finite numbers");
     }
     let (mut steps, mut wanted) = (0, step);
-    loop {
+    for attempt in 1..=2 * MAX_STEPS {
+        if attempt % ATTEMPTS_BETWEEN_CALLS == 0 && go_on(method.t()).is_break() {
+            return Err(Halt::Stopped);
+        }
         let left = length - method.t();
         wanted = if method.h() < left { method.h() } else { wanted.max(method.h()) };
         if !method.h().is_finite() {
@@ -203,7 +212,7 @@ fn cross<M: OrdinaryNumericalMethod<f64, Vec<f64>>>(
             method.set_h(left);
         }
         if method.step(problem).is_err() {
-            return stuck(method.t(), "the scheme cannot meet its tolerances in any reasonable number of steps");
+            return stuck(method.t(), TOO_MANY);
         }
         if matches!(method.status(), Status::RejectedStep) {
             wanted = 0.0;
@@ -215,6 +224,7 @@ fn cross<M: OrdinaryNumericalMethod<f64, Vec<f64>>>(
             return Ok((steps, wanted.max(method.h())));
         }
     }
+    stuck(method.t(), TOO_MANY)
 }
 
 /// Newton's iterations stop well below the error a step may make, and above what rounding lets them reach.
@@ -224,3 +234,8 @@ fn newton_tolerance(atol: f64) -> f64 {
 
 /// Steps within one interval between ticks beyond which a scheme is taken to be stuck.
 const MAX_STEPS: usize = 100_000;
+
+/// Attempted steps after which the caller hears from a scheme.
+const ATTEMPTS_BETWEEN_CALLS: usize = 16;
+
+const TOO_MANY: &str = "the scheme cannot meet its tolerances in any reasonable number of steps";

@@ -165,3 +165,14 @@ fn a_result_that_is_not_finite_is_an_error_naming_the_joint() {
     let error = refused(&FORWARD.replace("\"tau\": [1, 2, 3]", "\"tau\": [1, 2, 1e308], \"tau_ext\": [0, 0, 1e308]"));
     assert!(error.element.contains("joint `") && error.problem.contains("not a finite number"), "{error}");
 }
+
+#[test]
+fn no_part_of_a_line_is_answered_and_none_panics() {
+    let mut evaluator = evaluator(ALL);
+    let line = FORWARD.replace("\"tau\"", "\"wrenches\": [{\"link\": \"tool\", \"force\": [0, 0, 1]}], \"tau\"");
+    assert!(evaluator.evaluate_line(&line).is_ok());
+    for end in 0..line.len() {
+        assert!(evaluator.evaluate_line(&line[..end]).is_err(), "{}", &line[..end]);
+        assert!(evaluator.evaluate_line(&line[end + 1..]).is_err(), "{}", &line[end + 1..]);
+    }
+}

@@ -104,7 +104,7 @@ impl Knot<f64> {
     }
 }
 
-/// Writes the monotone cubic (Fritsch & Carlson 1980) through the points of `table` as knots, straight beyond both ends,
+/// Writes the monotone cubic (harmonic-mean slopes, Fritsch & Butland 1984) through the points of `table` as knots, straight beyond both ends,
 /// and returns how many; `None` if there is not room for them. A table from `[0, 0]` is continued oddly.
 pub(crate) fn lower_table(table: &[[f64; 2]], knots: &mut [Knot<f64>]) -> Option<usize> {
     let odd = table[0] == [0.0, 0.0];

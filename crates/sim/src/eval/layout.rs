@@ -93,11 +93,13 @@ impl Arrays<'_> {
 
     /// A vector over the motors, reflected to the link side; zeros where it is neither given nor needed.
     pub(super) fn motors(&self, key: &str, given: Option<&[f64]>, needed: bool) -> Result<Vec<f64>, Error> {
-        let mut v = self.vector(key, given, needed, ", since the robot has elastic joints in this model", true)?;
-        if self.motor_side {
-            v.iter_mut().zip(&self.layout.ratios).for_each(|(x, n)| *x /= n);
-        }
-        Ok(v)
+        let v = self.vector(key, given, needed, ", since the robot has elastic joints in this model", true)?;
+        Ok(self.over_ratio(v))
+    }
+
+    /// Motor torques, reflected to the link side.
+    pub(super) fn torques(&self, key: &str, given: &[f64]) -> Result<Vec<f64>, Error> {
+        Ok(self.times_ratio(self.vector(key, Some(given), true, "", true)?))
     }
 
     /// Generalised forces on the link side.
@@ -105,29 +107,14 @@ impl Arrays<'_> {
         self.vector(key, given, false, "", true)
     }
 
-    /// Motor torques, reflected to the link side.
-    pub(super) fn torques(&self, key: &str, given: &[f64]) -> Result<Vec<f64>, Error> {
-        let mut v = self.vector(key, Some(given), true, "", true)?;
-        if self.motor_side {
-            v.iter_mut().zip(&self.layout.ratios).for_each(|(x, n)| *x *= n);
-        }
-        Ok(v)
+    /// From reflected motions to the user's, from the user's torques to reflected ones.
+    pub(super) fn times_ratio(&self, v: Vec<f64>) -> Vec<f64> {
+        v.iter().enumerate().map(|(k, x)| x * self.ratio(k)).collect()
     }
 
-    /// Reflected motor accelerations, as the user wants them.
-    pub(super) fn motors_out(&self, mut v: Vec<f64>) -> Vec<f64> {
-        if self.motor_side {
-            v.iter_mut().zip(&self.layout.ratios).for_each(|(x, n)| *x *= n);
-        }
-        v
-    }
-
-    /// Reflected motor torques, as the user wants them.
-    pub(super) fn torques_out(&self, mut v: Vec<f64>) -> Vec<f64> {
-        if self.motor_side {
-            v.iter_mut().zip(&self.layout.ratios).for_each(|(x, n)| *x /= n);
-        }
-        v
+    /// From the user's motions to reflected ones, from reflected torques to the user's.
+    pub(super) fn over_ratio(&self, v: Vec<f64>) -> Vec<f64> {
+        v.iter().enumerate().map(|(k, x)| x / self.ratio(k)).collect()
     }
 
     /// Gear ratios, 1 for all where everything is on the link side.

@@ -133,7 +133,7 @@ impl Evaluator {
                 let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
                 self.dynamics.forward(state, &tau, ext, out)?;
                 answer.qdd = Some(qdd);
-                answer.thetadd = Some(arrays.motors_out(thetadd));
+                answer.thetadd = Some(arrays.times_ratio(thetadd));
                 answer.tau_j = Some(tau_j);
             }
             Task::Inverse(qdd) => {
@@ -143,7 +143,7 @@ impl Evaluator {
                 let out = Inverse { tau_j: &mut tau_j, tau: &mut tau };
                 self.dynamics.inverse(state, Acceleration { qdd: &qdd, thetadd: &thetadd }, ext, out)?;
                 answer.tau_j = Some(tau_j);
-                answer.tau = Some(arrays.torques_out(tau));
+                answer.tau = Some(arrays.over_ratio(tau));
             }
             Task::Neither => {}
         }

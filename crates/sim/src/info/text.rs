@@ -7,9 +7,10 @@ use std::fmt;
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.gravity;
-        writeln!(f, "{}: {} joints, {} links", self.name, self.joints.len(), self.links.len())?;
-        writeln!(f, "model {}, gravity [{x}, {y}, {z}] m/s²", self.model)?;
-        writeln!(f, "q has {} entries, qd and tau {}; moving mass {} kg", self.nq, self.nv, digits(self.moving_mass))?;
+        writeln!(f, "{}, {} model, gravity [{x}, {y}, {z}] m/s²", self.name, self.model)?;
+        let (joints, links) = (self.joints.len(), self.links.len());
+        writeln!(f, "joints: {joints}, links: {links}, moving mass: {} kg", digits(self.moving_mass))?;
+        writeln!(f, "entries of q: {}, of qd, tau and all others: {}", self.nq, self.nv)?;
 
         writeln!(f, "\nJoints, in coordinate order")?;
         table(

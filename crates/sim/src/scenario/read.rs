@@ -31,7 +31,11 @@ impl ScenarioFile {
         let mut file = Self::parse(&source::read(files, path)?, path)?;
         if let Some(csv) = &file.scenario.reference.csv {
             let csv = source::beside(path, csv);
-            file.csv = Some(SourceFile { text: source::read(files, &csv)?, name: name_of(&csv) });
+            let text = source::read(files, &csv).map_err(|e| Error {
+                remedy: "give the path of the CSV file, relative to the scenario".to_owned(),
+                ..file.keys.error("reference.csv", format!("`{}`: {}", csv.display(), e.problem), "")
+            })?;
+            file.csv = Some(SourceFile { text, name: name_of(&csv) });
         }
         Ok(file)
     }

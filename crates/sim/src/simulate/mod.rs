@@ -73,7 +73,8 @@ impl Simulation {
         let initial = start::initial_state(file, &joints, &references, &mut dynamics, &mut loads)?;
         let modes = modes::modes(&mut dynamics, &joints, &initial.q, &initial.theta)?;
         let sampler = Sampler::new(&robot, &joints, &dynamics)?;
-        let adaptive = scenario.integrator.fixed_step().is_none().then(|| Adaptive::new(&dynamics));
+        let adaptive =
+            scenario.integrator.fixed_step().is_none().then(|| Adaptive::new(scenario.integrator, &dynamics));
         let mut simulation = Self {
             points: vec![Point::default(); joints.len()],
             state: initial.clone(),

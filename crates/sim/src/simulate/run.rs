@@ -4,11 +4,15 @@ use super::clock::{Clock, Instant};
 use super::summary::{Summary, Tally};
 use super::{Simulation, StateVec};
 use crate::error::{Error, Warning};
+use crate::ode::Halt;
 use crate::record::Recorder;
 use crate::scenario::Integrator;
 use gyroflex::integrate::integrate;
 use std::ops::ControlFlow;
 use std::time::Instant as WallClock;
+
+/// Fixed steps after which a run between distant samples is looked at and its caller hears from it.
+const STEPS_BETWEEN_CALLS: u64 = 1024;
 
 /// How far a run came.
 struct Progress {
@@ -26,7 +30,8 @@ impl Simulation {
         self.clock().samples()
     }
 
-    /// Runs the scenario from its start. After every instant, `progress` is told the simulated time [s] and may stop the run.
+    /// Runs the scenario from its start. Now and then, and after every instant, `progress` is told the
+    /// simulated time [s] and may stop the run.
     /// The recorder is completed in any case: at the end, on a stop, on a diverging run, on any error.
     ///
     /// # Errors
@@ -81,7 +86,13 @@ impl Simulation {
         for instant in self.clock() {
             if instant.t > done.t {
                 self.loads.set_time(done.t);
-                done.steps += self.advance(done.t, instant.t - done.t)?;
+                let start = done.t;
+                let (steps, stopped) = self.advance(start, instant.t - start, progress)?;
+                done.steps += steps;
+                if let Some(t) = stopped {
+                    (done.t, done.interrupted) = (t, true);
+                    break;
+                }
                 self.check_state(instant.t)?;
             }
             done.t = instant.t;
@@ -117,20 +128,35 @@ impl Simulation {
         Ok(())
     }
 
-    /// Integrates over `length` seconds from time `t` under held motor torques; returns the number of steps.
-    fn advance(&mut self, t: f64, length: f64) -> Result<u64, Error> {
+    /// Integrates over `length` seconds from time `t` under held motor torques. Returns the number of steps, and the time
+    /// reached if `progress` stopped it on the way.
+    fn advance(
+        &mut self,
+        t: f64,
+        length: f64,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<(u64, Option<f64>), Error> {
         let scheme = self.file.scenario.integrator;
         if let Some(adaptive) = &mut self.adaptive {
-            let state = self.state.view_mut();
-            return adaptive
-                .advance(&scheme, &mut self.dynamics, &mut self.loads, state, &self.tau, length)
-                .map_err(|stuck| self.diverged(self.fastest_joint(), t + stuck.at, stuck.why));
+            let (state, go_on) = (self.state.view_mut(), &mut |into: f64| progress(t + into));
+            return match adaptive.advance(&mut self.dynamics, &mut self.loads, state, &self.tau, length, go_on) {
+                Ok(steps) => Ok((steps, None)),
+                Err(Halt::Stopped) => Ok((0, Some(t))),
+                Err(Halt::Stuck { at, why }) => Err(self.diverged(self.fastest_joint(), t + at, why)),
+            };
         }
         let step = scheme.fixed_step().unwrap_or(length);
         // As few equal steps as are not longer than asked for, up to rounding.
         let steps = (length / step * (1.0 - 1e-9)).ceil().max(1.0);
         let h = length / steps;
-        for _ in 0..steps as u64 {
+        for i in 0..steps as u64 {
+            let now = t + i as f64 * h;
+            if i % STEPS_BETWEEN_CALLS == STEPS_BETWEEN_CALLS - 1 {
+                self.check_state(now)?;
+                if progress(now).is_break() {
+                    return Ok((i, Some(now)));
+                }
+            }
             self.turn_loads(h)?;
             let (state, ext) = (self.state.view_mut(), self.loads.external());
             match scheme {
@@ -140,7 +166,7 @@ impl Simulation {
                 _ => self.dynamics.rk4(state, &self.tau, ext, h)?,
             }
         }
-        Ok(steps as u64)
+        Ok((steps as u64, None))
     }
 
     /// Loads are held over a fixed step in the axes of their links; taking them half-way keeps the error at second order.

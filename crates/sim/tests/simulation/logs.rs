@@ -80,6 +80,21 @@ fn stopped_run_completes_its_log() {
     assert_eq!((counter.samples, counter.finished, summary.end_time), (11, 1, 0.1));
 }
 
+#[test]
+fn run_stops_between_distant_samples() {
+    for method in ["{method: rk4, step: 1e-4}", "{method: dopri5}", "{method: kvaerno5, rtol: 1e-5, atol: 1e-7}"] {
+        let yaml = format!("duration: 100\nlog: {{rate: 0.01}}\nintegrator: {method}");
+        let (mut counter, mut calls) = (Counter::default(), 0);
+        let mut stop = |_| {
+            calls += 1;
+            if calls == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let summary = simulation(&arm(1), &yaml).run(&mut counter, &mut stop).unwrap();
+        assert!(summary.interrupted && summary.end_time < 50.0, "{method}: {}", summary.end_time);
+        assert_eq!((counter.samples, counter.finished), (1, 1), "{method}");
+    }
+}
+
 /// A velocity loop at 50 Hz that answers at 2000 1/s overshoots more at each tick.
 const RUNAWAY: &str = "duration: 5\ninitial: {qd: {joint2: 0.1}}\nreference: {default: {type: hold, at: 0.0}}
 controller: {type: pd, rate: 50, kp: 0, kd: 2000}\nlog: {rate: 100}";
