@@ -1,9 +1,13 @@
-//! Array arguments: whatever NumPy understands as real numbers, copied once into storage of ours, checked on the way.
+//! Arrays in: whatever NumPy understands as real numbers, copied once into storage of ours, checked on the way.
+//! Arrays out: new ones, checked too.
 
 use crate::errors;
-use numpy::{PyArray1, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
+
+pub(crate) type Vector<'py> = Bound<'py, PyArray1<f64>>;
+pub(crate) type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Copies a vector argument into `out`.
 ///
@@ -83,4 +87,21 @@ fn converted<'py>(
     }
     let array = array.call_method1("astype", (numpy::dtype::<f64>(py),))?;
     array.cast_into::<PyArray1<f64>>().map_err(|e| not_numbers(e.to_string()))
+}
+
+/// A result over the joints.
+pub(crate) fn vector<'py>(py: Python<'py>, name: &str, numbers: &[f64]) -> PyResult<Vector<'py>> {
+    check_result(name, numbers)?;
+    Ok(PyArray1::from_slice(py, numbers))
+}
+
+/// A square matrix from its rows, one after the other.
+pub(crate) fn matrix<'py>(py: Python<'py>, name: &str, numbers: &[f64], n: usize) -> PyResult<Matrix<'py>> {
+    check_result(name, numbers)?;
+    PyArray1::from_slice(py, numbers).reshape([n, n])
+}
+
+/// Nothing that is not a number leaves this house.
+fn check_result(name: &str, numbers: &[f64]) -> PyResult<()> {
+    if numbers.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(errors::overflow(name)) }
 }

@@ -1,18 +1,16 @@
 //! `gyroflex.Robot`: the calculator of one robot.
 
 use crate::arguments::{self, Layout};
+use crate::arrays::{Matrix, Vector, matrix, vector};
 use crate::errors;
 use crate::workspace::{Pool, Workspace};
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex_sim::Robot;
 use gyroflex_sim::load::nearest::nearest;
 use gyroflex_sim::load::{LoadOptions, load};
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::path::PathBuf;
-
-type Vector<'py> = Bound<'py, PyArray1<f64>>;
-type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 
 /// A robot with its drives, loaded from files. It never changes, and any number of threads may use it at once.
 ///
@@ -297,20 +295,4 @@ impl PyRobot {
         let fidelity = model.map_or(Ok(self.robot.fidelity), arguments::fidelity)?;
         self.pool.with(&self.robot, fidelity, call)
     }
-}
-
-fn vector<'py>(py: Python<'py>, name: &str, numbers: &[f64]) -> PyResult<Vector<'py>> {
-    check_result(name, numbers)?;
-    Ok(PyArray1::from_slice(py, numbers))
-}
-
-/// A square matrix from its rows, one after the other.
-fn matrix<'py>(py: Python<'py>, name: &str, numbers: &[f64], n: usize) -> PyResult<Matrix<'py>> {
-    check_result(name, numbers)?;
-    PyArray1::from_slice(py, numbers).reshape([n, n])
-}
-
-/// Nothing that is not a number leaves this house.
-fn check_result(name: &str, numbers: &[f64]) -> PyResult<()> {
-    if numbers.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(errors::overflow(name)) }
 }
