@@ -3,15 +3,12 @@
 use crate::workspace::Workspace;
 use crate::{arrays, errors};
 use gyroflex::model::Fidelity;
+use gyroflex_sim::eval::unit_quaternion;
 use gyroflex_sim::load::{Mimic, nearest::nearest};
 use pyo3::prelude::*;
 
 /// Entries of a floating root in an array over the velocities.
 const ROOT: usize = 6;
-/// Beyond this a quaternion is a mistake, not a rounded unit quaternion.
-const QUATERNION_TOLERANCE: f64 = 1e-6;
-/// Within this a quaternion is used as it is, bit for bit: its error shows in no result.
-const QUATERNION_ROUNDING: f64 = 1e-14;
 
 const POSITIONS: &str = "give one entry per position coordinate, in the order of `joint_names`; a floating root leads with x y z qx qy qz qw";
 const VELOCITIES: &str =
@@ -32,16 +29,7 @@ impl Layout {
         if !self.floating {
             return Ok(());
         }
-        let quaternion = &mut q[3..7];
-        let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if (norm - 1.0).abs() > QUATERNION_TOLERANCE {
-            let problem = format!("the quaternion of the root has length {norm}, not 1");
-            return Err(errors::argument("q", problem, "give a unit quaternion qx qy qz qw as entries 3 to 6"));
-        }
-        if (norm - 1.0).abs() > QUATERNION_ROUNDING {
-            quaternion.iter_mut().for_each(|x| *x /= norm);
-        }
-        Ok(())
+        unit_quaternion(&mut q[3..7]).map_err(|e| errors::argument("q", e.problem, e.remedy))
     }
 
     /// Joint velocities or accelerations.

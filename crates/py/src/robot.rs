@@ -272,9 +272,8 @@ impl PyRobot {
         };
         self.with(None, |w| {
             self.layout.positions(q, &mut w.q)?;
-            let mut poses = vec![Transform::identity(); self.robot.bodies.len()];
-            w.dynamics.placements(&w.q, &mut poses).map_err(errors::raise)?;
-            let pose = link.body.map_or(link.placement, |body| link.placement.after(poses[body]));
+            w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
+            let pose = link.body.map_or(link.placement, |body| link.placement.after(w.poses[body]));
             let [x, y, z] = pose.rotation().rows.map(|row| row.to_array());
             let p = pose.pos.to_array();
             let rows = [x, y, z].into_iter().zip(p).flat_map(|(r, p)| [r[0], r[1], r[2], p]);

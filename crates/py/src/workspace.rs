@@ -2,6 +2,7 @@
 
 use crate::errors;
 use gyroflex::model::Fidelity;
+use gyroflex::spatial::Transform;
 use gyroflex_sim::{Dynamics, Robot};
 use pyo3::PyResult;
 use std::sync::Mutex;
@@ -25,6 +26,8 @@ pub(crate) struct Workspace {
     pub(crate) out: [Vec<f64>; 3],
     /// A result of `nv * nv` entries by rows.
     pub(crate) matrix: Vec<f64>,
+    /// Pose of every body.
+    pub(crate) poses: Vec<Transform<f64>>,
 }
 
 impl Workspace {
@@ -44,6 +47,7 @@ impl Workspace {
             tau_ext: zeros(),
             out: [zeros(), zeros(), zeros()],
             matrix: vec![0.0; nv * nv],
+            poses: vec![Transform::identity(); model.bodies().len()],
             dynamics,
         })
     }

@@ -140,16 +140,21 @@ fn rpy_turns_about_fixed_axes_roll_first() {
 }
 
 #[test]
-fn right_angles_are_exact_and_1_5708_is_not_one() {
+fn right_angles_are_exact_and_their_abbreviations_are_not() {
     assert_eq!(rotation("1.5707963267948966 0 0"), [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]);
-    assert_eq!(rotation("0 -1.57079632679 0"), [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
-    assert_eq!(rotation("3.14159265359 0 -3.141592653589793"), [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]);
+    assert_eq!(rotation("0 -1.5707963267948966 0"), [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
+    assert_eq!(
+        rotation("3.141592653589793 0 -3.141592653589793"),
+        [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]
+    );
     assert_eq!(
         rotation("1.5707963267948966 1.5707963267948966 0"),
         [[0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 0.0, 0.0]]
     );
-    let five_digits: f64 = "1.5708".parse().unwrap();
-    assert_eq!(rotation("1.5708 0 0")[1][1], five_digits.cos());
+    for written in ["1.5708", "1.57079632679"] {
+        let angle: f64 = written.parse().unwrap();
+        assert_eq!(rotation(&format!("{written} 0 0"))[1][1], angle.cos());
+    }
 }
 
 #[test]

@@ -81,14 +81,7 @@ impl Arrays<'_> {
         finite("q", given)?;
         let mut q = given.to_vec();
         if floating {
-            let norm = q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
-            if (norm - 1.0).abs() > QUATERNION_TOLERANCE {
-                let problem = format!("the quaternion of the root has length {norm}, not 1");
-                return Err(fault("q", problem, "give a unit quaternion qx qy qz qw as entries 4 to 7"));
-            }
-            if (norm - 1.0).abs() > QUATERNION_ROUNDING {
-                q[3..7].iter_mut().for_each(|x| *x /= norm);
-            }
+            unit_quaternion(&mut q[3..7])?;
         }
         Ok(q)
     }
@@ -161,6 +154,22 @@ impl Arrays<'_> {
         let problem = format!("{} entries are given, but {nv}{or} are expected", given.len());
         Err(fault(key, problem, format!("give one entry per joint, in this order: {}", order())))
     }
+}
+
+/// Frees the quaternion of a floating root, entries 3 to 6 of `q`, of its rounding to fewer digits.
+///
+/// # Errors
+/// Anything that is not a unit quaternion.
+pub fn unit_quaternion(quaternion: &mut [f64]) -> Result<(), Error> {
+    let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if (norm - 1.0).abs() > QUATERNION_TOLERANCE {
+        let problem = format!("the quaternion of the root has length {norm}, not 1");
+        return Err(fault("q", problem, "give a unit quaternion qx qy qz qw after the position x y z"));
+    }
+    if (norm - 1.0).abs() > QUATERNION_ROUNDING {
+        quaternion.iter_mut().for_each(|x| *x /= norm);
+    }
+    Ok(())
 }
 
 /// Refuses infinities and NaN that a program passes; JSON has none.

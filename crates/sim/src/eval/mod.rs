@@ -12,6 +12,7 @@ mod significance;
 mod wrench;
 
 pub use input::{Query, Wrench, WrenchAxes};
+pub use layout::unit_quaternion;
 pub use output::{Answer, EnergyAnswer};
 pub use significance::{Significance, significance};
 

@@ -4,8 +4,9 @@ use gyroflex::Scalar;
 use gyroflex::spatial::{Mat3, Transform, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// An angle this close to a multiple of 90° is meant to be one [rad]. `1.5708` is 3.7e-6 away and stays what it is.
-const RIGHT_ANGLE: f64 = 1e-9;
+/// An angle this close to a multiple of 90° is one, but for its rounding to 64 bits [rad]. `1.57079632679` is 5e-12 away and
+/// stays what it is: in an arm whose last links weigh grams, accelerations would show the difference.
+const RIGHT_ANGLE: f64 = 1e-14;
 
 /// The pose of a frame given by its origin and roll, pitch, yaw about fixed axes: `Rz(yaw) Ry(pitch) Rx(roll)`.
 pub(crate) fn pose(xyz: [f64; 3], rpy: [f64; 3]) -> Transform<f64> {

@@ -1,0 +1,31 @@
+"""The stubs say what the module is, and a user's program passes the strictest check."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import typed_example
+
+HERE = Path(__file__).parent
+
+
+def run(*command: str | Path) -> None:
+    done = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_stubs_fit_the_module() -> None:
+    run("mypy.stubtest", "gyroflex")
+
+
+def test_example_passes_the_strict_check() -> None:
+    run("mypy", "--strict", HERE / "typed_example.py")
+
+
+def test_example_runs(arm_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    typed_example.main(arm_file)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split(":")[0] for line in lines[:3]] == ["shoulder", "elbow", "extend"]

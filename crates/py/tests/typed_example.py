@@ -1,0 +1,32 @@
+"""A program of a user, checked by `mypy --strict` and run by the tests."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import gyroflex
+import numpy as np
+from numpy.typing import NDArray
+
+
+def holding_torques(robot: gyroflex.Robot, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Motor torques that hold the links still at `q`, whatever the transmissions are."""
+    still = np.zeros(robot.nv)
+    _, tau = robot.inverse_dynamics(q, still, still, model="rigid")
+    return tau
+
+
+def main(path: Path) -> None:
+    robot = gyroflex.Robot.load(path)
+    q = np.zeros(robot.nq)
+    for joint, torque in zip(robot.joint_names, holding_torques(robot, q), strict=True):
+        print(f"{joint}: {torque:.3f}")
+    try:
+        robot.placement("no such link", q)
+    except gyroflex.ArgumentError as error:
+        print(error.remedy)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
