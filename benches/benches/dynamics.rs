@@ -5,6 +5,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use gyroflex::model::Fidelity;
 use gyroflex_benches::{Workload, robot, without_drives};
 
+type Work = fn(&mut Workload, usize);
+
 fn dynamics(c: &mut Criterion) {
     let arm = robot("iiwa14");
     let plain = without_drives(arm.clone());
@@ -12,9 +14,8 @@ fn dynamics(c: &mut Criterion) {
     for fidelity in Fidelity::ALL {
         cases.push((fidelity.name().to_string(), Workload::new(&arm, fidelity)));
     }
-    let works: [(&str, fn(&mut Workload, usize)); 3] =
-        [("aba", Workload::forward), ("rnea", Workload::inverse), ("crba", Workload::mass_matrix)];
-    for (name, work) in works {
+    let works: [Work; 3] = [Workload::forward, Workload::inverse, Workload::mass_matrix];
+    for (name, work) in ["aba", "rnea", "crba"].into_iter().zip(works) {
         let mut group = c.benchmark_group(format!("iiwa14/{name}"));
         for (case, workload) in &mut cases {
             let mut i = 0;

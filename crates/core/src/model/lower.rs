@@ -11,7 +11,11 @@ use crate::spatial::{Mat3, SpatialInertia, SymMat3, Transform, Vec3};
 impl RobotSpec<'_> {
     /// How many spring knots [`RobotSpec::lower`] writes at most.
     pub fn knots_needed(&self) -> usize {
-        2 * self.spring_tables.len()
+        let knots = |body: &BodySpec| match body.drive?.transmission {
+            TransmissionSpec::Elastic { spring: SpringSpec::Table { len, .. }, .. } => len.checked_mul(2),
+            _ => None,
+        };
+        self.bodies.iter().filter_map(knots).sum()
     }
 
     /// Checks the description and writes one record per body, and the pieces of all spring tables, into the caller's

@@ -138,6 +138,7 @@ fn csv_reference_is_read_with_the_scenario() {
         assert!(error.problem.contains(words) && error.file.ends_with("way.csv"), "{error}");
     }
     std::fs::remove_file(folder.join("way.csv")).unwrap();
-    assert_eq!(ScenarioFile::load(&Disk, &scenario).unwrap_err().kind, ErrorKind::Io);
+    let missing = ScenarioFile::load(&Disk, &scenario).unwrap_err().to_string();
+    assert!(missing.contains("way.csv") && missing.contains("no such file"), "{missing}");
     std::fs::remove_dir_all(&folder).unwrap();
 }
