@@ -78,22 +78,12 @@ pub fn crba<T: Scalar>(
             }
             continue;
         }
-        // F = Iᶜ S,  M_ii = Sᵀ F (+ B); on the way to the base  F ← Xᵀ F,  M_ji = S_jᵀ F
-        let mut f = match body.joint {
+        // F = Iᶜ S
+        let f = match body.joint {
             JointKind::Prismatic => composite.momentum(Motion { ang: Vec3::zero(), lin: Vec3::z_axis() }),
             _ => composite.momentum(Motion { ang: Vec3::z_axis(), lin: Vec3::zero() }),
         };
-        m[k * nv + k] = along_joint(body, f) + rigid_reflected_inertia(body);
-        let carrier = body.drive.as_ref().and_then(|d| d.rotor.mount());
-        let mut at = i;
-        while let Some(p) = model.bodies[at].parent() {
-            f = scratch[at].x.inv_force(f);
-            if carrier == Some(p) {
-                f += rigid_coupling(body);
-            }
-            write_symmetric(model, p, k, f, m);
-            at = p;
-        }
+        write_branch(model, i, f, |b| scratch[b].x, m);
     }
     Ok(())
 }
@@ -146,6 +136,30 @@ pub fn reflected_inertia<T: Scalar>(model: &Model<T>, b: &mut [T]) -> Result<(),
         }
     }
     Ok(())
+}
+
+/// Column of joint `i` and its mirror image: `M_ii = Sᵀ F (+ B)`, and on the way to the base `F ← Xᵀ F (+ N J n at the
+/// carrier)`, `M_ji = S_jᵀ F`. `x(b)` is the transform from the parent of body `b`.
+pub(super) fn write_branch<T: Scalar>(
+    model: &Model<T>,
+    i: usize,
+    mut f: Force<T>,
+    x: impl Fn(usize) -> Transform<T>,
+    m: &mut [T],
+) {
+    let body = &model.bodies[i];
+    let k = body.v_index();
+    m[k * model.nv + k] = along_joint(body, f) + rigid_reflected_inertia(body);
+    let carrier = body.drive.as_ref().and_then(|d| d.rotor.mount());
+    let mut at = i;
+    while let Some(p) = model.bodies[at].parent() {
+        f = x(at).inv_force(f);
+        if carrier == Some(p) {
+            f += rigid_coupling(body);
+        }
+        write_symmetric(model, p, k, f, m);
+        at = p;
+    }
 }
 
 /// `Sᵀ_b f` into the rows of body `b`, column `k`.

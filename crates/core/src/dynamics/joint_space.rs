@@ -5,14 +5,14 @@
 //! factorisation `M = Lᵀ L` fills in nothing (RBDA §6.5) and costs O(n·depth²).
 
 use super::aba::{
-    AbaScratch, along_joint, check, moved_along_joint, outward_velocities, rigid_coupling, rigid_reflected_inertia,
-    root_wrench, rotor_accelerations,
+    AbaScratch, along_joint, check, moved_along_joint, outward_velocities, rigid_coupling, root_wrench,
+    rotor_accelerations,
 };
-use super::crba::write_symmetric;
+use super::crba::{write_branch, write_symmetric};
 use super::{External, Forward, State};
 use crate::Scalar;
 use crate::model::{JointKind, Model, SizeError};
-use crate::spatial::{Force, Motion, Vec3};
+use crate::spatial::{Motion, Vec3};
 
 /// The same as [`super::aba`] for every robot, by another route: `M q̈ = τ − C q̇ − g` with elastic rotors eliminated.
 /// `matrix` has `nv * nv` entries of scratch.
@@ -66,7 +66,8 @@ pub fn forward_in_joint_space<T: Scalar>(
         let carrier = body.drive.as_ref().and_then(|d| d.rotor.mount());
         let at_carrier = carrier.map_or(Vec3::zero(), |m| scratch[m].a.ang);
         qdd[k] = s.u - along_joint(body, s.pa) - rigid_coupling(body).ang.dot(at_carrier);
-        inertia_column(model, scratch, i, matrix);
+        let unit = moved_along_joint(body, Motion::zero(), T::one());
+        write_branch(model, i, s.ia.force(unit), |b| scratch[b].x, matrix);
     }
 
     solve_by_branches(model, matrix, qdd);
@@ -86,25 +87,6 @@ pub fn forward_in_joint_space<T: Scalar>(
     }
     rotor_accelerations(model, scratch, qdd, thetadd, tau_j);
     Ok(())
-}
-
-/// Column of joint `i` in the inertia matrix, up to the base: composite inertia, `B`, and `N J n` from the carrier on.
-fn inertia_column<T: Scalar>(model: &Model<T>, scratch: &[AbaScratch<T>], i: usize, matrix: &mut [T]) {
-    let body = &model.bodies[i];
-    let k = body.v_index();
-    let unit = moved_along_joint(body, Motion::zero(), T::one());
-    let mut f: Force<T> = scratch[i].ia.force(unit);
-    matrix[k * model.nv + k] = along_joint(body, f) + rigid_reflected_inertia(body);
-    let carrier = body.drive.as_ref().and_then(|d| d.rotor.mount());
-    let mut at = i;
-    while let Some(p) = model.bodies[at].parent() {
-        f = scratch[at].x.inv_force(f);
-        if carrier == Some(p) {
-            f += rigid_coupling(body);
-        }
-        write_symmetric(model, p, k, f, matrix);
-        at = p;
-    }
 }
 
 /// Solves `M x = b` in place by `M = Lᵀ D L` along the branches (RBDA table 6.3): row `k` touches only coordinates that

@@ -5,6 +5,7 @@ mod force;
 mod inertia;
 mod matrix;
 mod motion;
+pub(crate) mod screw;
 mod symmetric;
 mod transform;
 mod vector;
