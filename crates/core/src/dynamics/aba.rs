@@ -15,7 +15,7 @@
 use super::drive_torque::drives;
 use super::{External, Forward, State, check_external, check_scratch, check_state};
 use crate::Scalar;
-use crate::model::{Body, JointKind, Model, SizeError};
+use crate::model::{JointKind, Model, SizeError};
 use crate::spatial::{ArticulatedInertia, Force, Motion, Transform, Vec3};
 
 /// What the algorithm keeps for one body during a call.
@@ -98,13 +98,13 @@ pub fn aba<T: Scalar>(
         let s = scratch[i];
 
         // U = Iᴬ S,  d = Sᵀ U (+ B),  u = τ − Sᵀ pᴬ − Uᵀ c
-        let u_cap = articulated_column(body, &s.ia);
-        let d = along_joint(body, u_cap) + rigid_reflected_inertia(body);
+        let u_cap = body.column_of(&s.ia);
+        let d = body.along_joint(u_cap) + body.rigid_reflected_inertia();
         let d_inv = T::one() / d;
-        let u = s.u - along_joint(body, s.pa) - s.c.dot(u_cap);
+        let u = s.u - body.along_joint(s.pa) - s.c.dot(u_cap);
 
         // W = Xᵀ U + [N J n; 0]
-        let w = s.x.inv_force(u_cap) + rigid_coupling(body);
+        let w = s.x.inv_force(u_cap) + body.rigid_coupling();
         scratch[i].w = w;
         scratch[i].d_inv = d_inv;
         scratch[i].u = u;
@@ -136,7 +136,7 @@ pub fn aba<T: Scalar>(
         }
         // q̈ = (u − Wᵀ a_p)/d,   a = X a_p + c + S q̈
         let acceleration = (s.u - a_p.dot(s.w)) * s.d_inv;
-        s.a = moved_along_joint(body, a_rest, acceleration);
+        s.a = body.moved_along_joint(a_rest, acceleration);
         qdd[k] = acceleration;
     }
 
@@ -239,58 +239,6 @@ pub(super) fn rotor_accelerations<T: Scalar>(
                 tau_j[k] -= rotor.reflected_inertia * qdd[k] + rotor.gear_ratio * rotor.inertia * n_alpha;
             }
         }
-    }
-}
-
-/// `Iᴬ S` for the joint's axis along z.
-#[inline]
-fn articulated_column<T: Scalar>(body: &Body<T>, ia: &ArticulatedInertia<T>) -> Force<T> {
-    match body.joint {
-        JointKind::Prismatic => {
-            let [x, y, z] = ia.mixed.rows;
-            Force { ang: Vec3::new(x.z, y.z, z.z), lin: Vec3::new(ia.lin.xz, ia.lin.yz, ia.lin.zz) }
-        }
-        _ => Force { ang: Vec3::new(ia.ang.xz, ia.ang.yz, ia.ang.zz), lin: ia.mixed.rows[2] },
-    }
-}
-
-/// `Sᵀ f` for a joint of one degree of freedom.
-#[inline]
-pub(super) fn along_joint<T: Scalar>(body: &Body<T>, f: Force<T>) -> T {
-    match body.joint {
-        JointKind::Prismatic => f.lin.z,
-        _ => f.ang.z,
-    }
-}
-
-/// `m + S s` for a joint of one degree of freedom.
-#[inline]
-pub(super) fn moved_along_joint<T: Scalar>(body: &Body<T>, mut m: Motion<T>, s: T) -> Motion<T> {
-    match body.joint {
-        JointKind::Prismatic => m.lin.z += s,
-        _ => m.ang.z += s,
-    }
-    m
-}
-
-/// `B` of a rigidly geared rotor, which turns with the joint.
-#[inline]
-pub(super) fn rigid_reflected_inertia<T: Scalar>(body: &Body<T>) -> T {
-    match &body.drive {
-        Some(drive) if drive.elastic.is_none() => drive.rotor.reflected_inertia,
-        _ => T::zero(),
-    }
-}
-
-/// `[N J n; 0]` of a rigidly geared rotor, in the frame of its carrier.
-#[inline]
-pub(super) fn rigid_coupling<T: Scalar>(body: &Body<T>) -> Force<T> {
-    match &body.drive {
-        Some(drive) if drive.elastic.is_none() => {
-            let r = &drive.rotor;
-            Force::couple(r.axis.scale(r.gear_ratio * r.inertia))
-        }
-        _ => Force::zero(),
     }
 }
 

@@ -6,7 +6,6 @@
 //!
 //! Cost O(n·depth). No allocation, no panic, no branch on values.
 
-use super::aba::{along_joint, rigid_coupling, rigid_reflected_inertia};
 use super::check_scratch;
 use crate::Scalar;
 use crate::model::{JointKind, Model, SizeError};
@@ -149,13 +148,13 @@ pub(super) fn write_branch<T: Scalar>(
 ) {
     let body = &model.bodies[i];
     let k = body.v_index();
-    m[k * model.nv + k] = along_joint(body, f) + rigid_reflected_inertia(body);
+    m[k * model.nv + k] = body.along_joint(f) + body.rigid_reflected_inertia();
     let carrier = body.drive.as_ref().and_then(|d| d.rotor.mount());
     let mut at = i;
     while let Some(p) = model.bodies[at].parent() {
         f = x(at).inv_force(f);
         if carrier == Some(p) {
-            f += rigid_coupling(body);
+            f += body.rigid_coupling();
         }
         write_symmetric(model, p, k, f, m);
         at = p;
@@ -172,7 +171,7 @@ fn write_rows<T: Scalar>(model: &Model<T>, b: usize, k: usize, f: Force<T>, m: &
             m[(j + row) * nv + k] = entry;
         }
     } else {
-        m[j * nv + k] = along_joint(body, f);
+        m[j * nv + k] = body.along_joint(f);
     }
 }
 

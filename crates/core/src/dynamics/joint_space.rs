@@ -4,10 +4,7 @@
 //! vanishes unless one of the joints supports the other, because a carrier is an ancestor of its joint; so the
 //! factorisation `M = Lᵀ L` fills in nothing (RBDA §6.5) and costs O(n·depth²).
 
-use super::aba::{
-    AbaScratch, along_joint, check, moved_along_joint, outward_velocities, rigid_coupling, root_wrench,
-    rotor_accelerations,
-};
+use super::aba::{AbaScratch, check, outward_velocities, root_wrench, rotor_accelerations};
 use super::crba::{write_branch, write_symmetric};
 use super::{External, Forward, State};
 use crate::Scalar;
@@ -65,8 +62,8 @@ pub fn forward_in_joint_space<T: Scalar>(
         // A rigid rotor's own row: N J n·α, α what its carrier's velocity alone makes of it.
         let carrier = body.drive.as_ref().and_then(|d| d.rotor.mount());
         let at_carrier = carrier.map_or(Vec3::zero(), |m| scratch[m].a.ang);
-        qdd[k] = s.u - along_joint(body, s.pa) - rigid_coupling(body).ang.dot(at_carrier);
-        let unit = moved_along_joint(body, Motion::zero(), T::one());
+        qdd[k] = s.u - body.along_joint(s.pa) - body.rigid_coupling().ang.dot(at_carrier);
+        let unit = body.moved_along_joint(Motion::zero(), T::one());
         write_branch(model, i, s.ia.force(unit), |b| scratch[b].x, matrix);
     }
 
@@ -82,7 +79,7 @@ pub fn forward_in_joint_space<T: Scalar>(
             s.a = a_rest + Motion::from(free);
             thetadd[k..k + 6].copy_from_slice(&free);
         } else {
-            s.a = moved_along_joint(body, a_rest, qdd[k]);
+            s.a = body.moved_along_joint(a_rest, qdd[k]);
         }
     }
     rotor_accelerations(model, scratch, qdd, thetadd, tau_j);

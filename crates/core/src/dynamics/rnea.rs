@@ -6,7 +6,6 @@
 //!
 //! Cost O(n). No allocation, no panic, no branch on values.
 
-use super::aba::along_joint;
 use super::drive_torque::transmission_error;
 use super::{Acceleration, External, Inverse, State, check_external, check_scratch, check_state};
 use crate::Scalar;
@@ -112,7 +111,7 @@ pub fn rnea<T: Scalar>(
         }
         // τ_J = Sᵀ f + f_l(q̇) − τ_ext,   τ = (1 − e') τ_J + N ḣ + N f_m
         let external = ext.tau.get(k).copied().unwrap_or(T::zero());
-        tau_j[k] = along_joint(body, f) + body.friction.torque(state.qd[k]) - external;
+        tau_j[k] = body.along_joint(f) + body.friction.torque(state.qd[k]) - external;
         tau[k] = match &body.drive {
             None => tau_j[k],
             Some(drive) => {

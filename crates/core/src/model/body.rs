@@ -2,7 +2,7 @@
 
 use super::{Drive, Friction};
 use crate::Scalar;
-use crate::spatial::{Mat3, Motion, SpatialInertia, Transform, Vec3};
+use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, SpatialInertia, Transform, Vec3};
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -145,6 +145,61 @@ impl<T: Scalar> Body<T> {
             frame: self.frame.map(&mut f),
             friction: self.friction.map(&mut f),
             drive: self.drive.map(|d| d.map(&mut f)),
+        }
+    }
+}
+
+/// What the recursions ask of a joint of one degree of freedom, its axis along z.
+impl<T: Scalar> Body<T> {
+    /// `Iᴬ S`.
+    #[inline]
+    pub(crate) fn column_of(&self, ia: &ArticulatedInertia<T>) -> Force<T> {
+        match self.joint {
+            JointKind::Prismatic => {
+                let [x, y, z] = ia.mixed.rows;
+                Force { ang: Vec3::new(x.z, y.z, z.z), lin: Vec3::new(ia.lin.xz, ia.lin.yz, ia.lin.zz) }
+            }
+            _ => Force { ang: Vec3::new(ia.ang.xz, ia.ang.yz, ia.ang.zz), lin: ia.mixed.rows[2] },
+        }
+    }
+
+    /// `Sᵀ f`.
+    #[inline]
+    pub(crate) fn along_joint(&self, f: Force<T>) -> T {
+        match self.joint {
+            JointKind::Prismatic => f.lin.z,
+            _ => f.ang.z,
+        }
+    }
+
+    /// `m + S s`.
+    #[inline]
+    pub(crate) fn moved_along_joint(&self, mut m: Motion<T>, s: T) -> Motion<T> {
+        match self.joint {
+            JointKind::Prismatic => m.lin.z += s,
+            _ => m.ang.z += s,
+        }
+        m
+    }
+
+    /// `B` of a rigidly geared rotor, which turns with the joint; zero without one.
+    #[inline]
+    pub(crate) fn rigid_reflected_inertia(&self) -> T {
+        match &self.drive {
+            Some(drive) if drive.elastic.is_none() => drive.rotor.reflected_inertia,
+            _ => T::zero(),
+        }
+    }
+
+    /// `[N J n; 0]` of a rigidly geared rotor, in the frame of its carrier; zero without one.
+    #[inline]
+    pub(crate) fn rigid_coupling(&self) -> Force<T> {
+        match &self.drive {
+            Some(drive) if drive.elastic.is_none() => {
+                let r = &drive.rotor;
+                Force::couple(r.axis.scale(r.gear_ratio * r.inertia))
+            }
+            _ => Force::zero(),
         }
     }
 }
