@@ -204,13 +204,16 @@ impl Info {
 
 fn modes_at_zero(robot: &Robot) -> Result<Option<Modes>, Error> {
     let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
+    if !dynamics.model().bodies().iter().any(|b| b.is_elastic()) {
+        return Ok(None);
+    }
     let mut q = vec![0.0; dynamics.nq()];
     if robot.is_floating() {
         q[6] = 1.0;
     }
     let theta = vec![0.0; dynamics.nv()];
-    let found = modes(&mut dynamics, &Coordinates::of(robot), &q, &theta).ok();
-    Ok(found.filter(|m| !m.modes.is_empty()))
+    // A pose at which the inertia matrix is singular has no modes to show; everything else about the robot still does.
+    Ok(modes(&mut dynamics, &Coordinates::of(robot), &q, &theta).ok())
 }
 
 fn moving_rotor_mass(body: &BodySpec) -> f64 {
