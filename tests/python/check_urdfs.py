@@ -5,9 +5,10 @@ Pinocchio at random states; or it must be refused with one error that says where
 the exit code 1. Files refused because joints mimic others are compared once more with those joints independent, which is how
 Pinocchio reads them.
 
-Two exact ways to solve `M qdd = tau - h` in floating point differ by up to the condition number of `M` times the rounding unit.
-Where that is more than the tolerance (iCub has links that are points on their joint axes), it is what accelerations may
-differ by; the torques that the difference amounts to, `M (qdd - qdd')` over `tau`, must keep the tolerance everywhere.
+The tolerance is 1e-9 for every quantity. A row that misses it is never counted as agreeing. For the files of `ILL_CONDITIONED`,
+accelerations alone may miss it and are counted as `exceeds`, with the exit code left 0: two exact ways to solve `M qdd = tau - h`
+in floating point differ by up to the condition number of `M` times the rounding unit, which bounds them there, and the torques
+that the difference amounts to, `M (qdd - qdd')` over `tau`, must keep the tolerance like everything else.
 
 Two libraries, two conventions; `PinocchioTwin` is the translation.
 """
@@ -29,6 +30,7 @@ import gyroflex
 
 QUANTITIES = ("inverse", "forward", "balance", "inertia", "frames")
 BASES = ("fixed", "floating", "fixed*", "floating*")
+ILL_CONDITIONED = {"icub_description/robots/icub.urdf": "links that are points on their joint axes, cond(M) up to 8e8"}
 GRAVITY = np.array([0.0, 0.0, -9.81])
 
 
@@ -70,12 +72,14 @@ class Comparison:
     errors: dict[str, float]
     condition: float
 
-    def worst(self, tolerance: float) -> str:
-        """What differs by more than it may, in words; empty if nothing does."""
-        allowed = dict.fromkeys(QUANTITIES, tolerance)
-        allowed["forward"] = max(tolerance, self.condition * float(np.finfo(float).eps))
-        wrong = [f"{x} differs by {e:.1e}, allowed {allowed[x]:.1e}" for x, e in self.errors.items() if not e <= allowed[x]]
-        return "; ".join(wrong)
+    def misses(self, tolerance: float) -> dict[str, str]:
+        """The quantities that differ by more than the tolerance, in words."""
+        return {x: f"{x} differs by {e:.1e}, allowed {tolerance:.1e}" for x, e in self.errors.items() if not e <= tolerance}
+
+    def is_rounding(self, tolerance: float) -> bool:
+        """Whether accelerations alone miss the tolerance, and by no more than the condition of the inertia matrix explains."""
+        bound = self.condition * float(np.finfo(float).eps)
+        return set(self.misses(tolerance)) <= {"forward"} and self.errors["forward"] <= max(tolerance, bound)
 
 
 def compare_state(robot: gyroflex.Robot, twin: PinocchioTwin, rng: np.random.Generator) -> Comparison:
@@ -136,8 +140,11 @@ def check(path: Path, name: str, base: str, options: argparse.Namespace, number:
     states = [compare_state(robot, twin, rng) for _ in range(options.states)]
     result.errors = {x: max(state.errors[x] for state in states) for x in QUANTITIES}
     result.condition = max(state.condition for state in states)
-    if wrong := [w for w in (state.worst(options.tolerance) for state in states) if w]:
-        result.verdict, result.message = "DISAGREES", wrong[0]
+    if missing := [state for state in states if state.misses(options.tolerance)]:
+        result.message = "; ".join(missing[0].misses(options.tolerance).values())
+        explained = name in ILL_CONDITIONED and all(state.is_rounding(options.tolerance) for state in missing)
+        result.verdict = "exceeds" if explained else "DISAGREES"
+        result.message += f"; {ILL_CONDITIONED[name]}" if explained else ""
     return result
 
 
@@ -175,7 +182,7 @@ def main() -> int:
             results.append(check(path, name, base, options, number))
             print_row(results[-1], path)
 
-    verdicts = ("agrees", "refused", "DISAGREES", "UNCLEAR")
+    verdicts = ("agrees", "exceeds", "refused", "DISAGREES", "UNCLEAR")
     totals = {base: {v: sum(r.base == base and r.verdict == v for r in results) for v in verdicts} for base in BASES}
     for base, counts in totals.items():
         print(f"{base:9} " + ", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
