@@ -1,9 +1,9 @@
 //! The core's algorithms on owned vectors, with scratch as dirty as asked for.
 
 use gyroflex::dynamics::{
-    AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, Power, RneaScratch,
-    State, aba, coupling, crba, energy, forward_dynamics, forward_in_joint_space, matrix_len, power, reflected_inertia,
-    rnea,
+    AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, JointSpaceScratch,
+    Power, RneaScratch, State, aba, coupling, crba, energy, forward_dynamics, forward_in_joint_space, joint_space_len,
+    matrix_len, power, reflected_inertia, rnea,
 };
 use gyroflex::integrate::{StateMut, rk4, rk4_len};
 use gyroflex::model::{Fidelity, Model, RobotSpec, SizeError};
@@ -42,9 +42,10 @@ impl<T: Real> Core<T> {
     pub fn forward(&self, s: &Point) -> Accelerations {
         let model = self.model();
         let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
+        let mut joint_space = vec![JointSpaceScratch::new(); joint_space_len(&model)];
         let mut matrix = vec![nan(); matrix_len(&model)];
         self.write_forward(s, |x, out| {
-            let scratch = ForwardScratch { bodies: &mut bodies, matrix: &mut matrix };
+            let scratch = ForwardScratch { bodies: &mut bodies, joint_space: &mut joint_space, matrix: &mut matrix };
             forward_dynamics(&model, x.state(), &x.tau, x.external(), scratch, out)
         })
     }
@@ -59,7 +60,7 @@ impl<T: Real> Core<T> {
     /// Forward dynamics by the inertia matrix.
     pub fn forward_in_joint_space(&self, s: &Point) -> Accelerations {
         let model = self.model();
-        let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
+        let mut bodies = vec![JointSpaceScratch::new(); model.bodies().len()];
         let mut matrix = vec![nan(); model.nv() * model.nv()];
         self.write_forward(s, |x, out| {
             forward_in_joint_space(&model, x.state(), &x.tau, x.external(), &mut bodies, &mut matrix, out)
@@ -81,12 +82,13 @@ impl<T: Real> Core<T> {
     pub fn integrate(&self, s: &Point, step: f64, steps: usize) -> Point {
         let (model, mut x) = (self.model(), Inputs::<T>::new(s));
         let mut bodies = vec![AbaScratch::new(); model.bodies().len()];
+        let mut joint_space = vec![JointSpaceScratch::new(); joint_space_len(&model)];
         let mut matrix = vec![nan(); matrix_len(&model)];
         let mut work = vec![nan(); rk4_len(&model)];
         for _ in 0..steps {
             let state = StateMut { q: &mut x.q, qd: &mut x.qd, theta: &mut x.theta, thetad: &mut x.thetad };
             let ext = External { tau: &x.tau_ext, wrenches: &x.wrenches };
-            let scratch = ForwardScratch { bodies: &mut bodies, matrix: &mut matrix };
+            let scratch = ForwardScratch { bodies: &mut bodies, joint_space: &mut joint_space, matrix: &mut matrix };
             rk4(&model, state, &x.tau, ext, T::from_f64(step), scratch, &mut work).expect("slices fit the model");
         }
         let [q, qd, theta, thetad] = [x.q, x.qd, x.theta, x.thetad].map(|v| double(&v));

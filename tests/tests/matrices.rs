@@ -49,7 +49,7 @@ fn columns_are_unit_motions<T: Real>(t: &Trial<'_, T>) {
     };
     let (m, s, b) = (core.mass_matrix(&still), core.coupling(&still), core.reflected_inertia());
     // The row that an elastic transmission feels, and where it passes to the motor; a rigid gear's row is the motor's.
-    let elastic: Vec<bool> = model.bodies().iter().flat_map(|b| vec![b.is_elastic(); b.joint().nv()]).collect();
+    let elastic: Vec<bool> = model.bodies().iter().flat_map(|b| vec![b.is_elastic(); b.joint.nv()]).collect();
     let size = norm(&m);
     let passed = t.oracle().passed_by_transmissions(&still);
     let rows = |accelerated: &State| {

@@ -13,7 +13,7 @@ use crate::spatial::{Mat3, Vec3};
 ///
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; nothing is written then.
-pub fn integrate<T: Scalar>(model: &Model<T>, q: &[T], v: &[T], out: &mut [T]) -> Result<(), SizeError> {
+pub fn integrate<T: Scalar>(model: &Model<T::Param>, q: &[T], v: &[T], out: &mut [T]) -> Result<(), SizeError> {
     SizeError::check("q", q.len(), model.nq)?;
     SizeError::check("v", v.len(), model.nv)?;
     SizeError::check("out", out.len(), model.nq)?;
@@ -40,7 +40,7 @@ pub fn integrate<T: Scalar>(model: &Model<T>, q: &[T], v: &[T], out: &mut [T]) -
 ///
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; nothing is written then.
-pub fn difference<T: Scalar>(model: &Model<T>, from: &[T], to: &[T], out: &mut [T]) -> Result<(), SizeError> {
+pub fn difference<T: Scalar>(model: &Model<T::Param>, from: &[T], to: &[T], out: &mut [T]) -> Result<(), SizeError> {
     SizeError::check("from", from.len(), model.nq)?;
     SizeError::check("to", to.len(), model.nq)?;
     SizeError::check("out", out.len(), model.nv)?;
@@ -67,7 +67,7 @@ pub fn difference<T: Scalar>(model: &Model<T>, from: &[T], to: &[T], out: &mut [
 ///
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; nothing is written then.
-pub fn position_rate<T: Scalar>(model: &Model<T>, q: &[T], qd: &[T], out: &mut [T]) -> Result<(), SizeError> {
+pub fn position_rate<T: Scalar>(model: &Model<T::Param>, q: &[T], qd: &[T], out: &mut [T]) -> Result<(), SizeError> {
     SizeError::check("q", q.len(), model.nq)?;
     SizeError::check("qd", qd.len(), model.nv)?;
     SizeError::check("out", out.len(), model.nq)?;
@@ -91,7 +91,7 @@ pub fn position_rate<T: Scalar>(model: &Model<T>, q: &[T], qd: &[T], out: &mut [
 ///
 /// # Errors
 /// [`SizeError`] if the slice does not fit the model; nothing is written then.
-pub fn normalize<T: Scalar>(model: &Model<T>, q: &mut [T]) -> Result<(), SizeError> {
+pub fn normalize<T: Scalar>(model: &Model<T::Param>, q: &mut [T]) -> Result<(), SizeError> {
     SizeError::check("q", q.len(), model.nq)?;
     for body in model.bodies.iter().filter(|b| b.joint == JointKind::Floating) {
         let i = body.q_index() + 3;
@@ -130,7 +130,7 @@ pub fn euler_len<T: Scalar>(model: &Model<T>) -> usize {
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; the state is left alone then.
 pub fn semi_implicit_euler<T: Scalar>(
-    model: &Model<T>,
+    model: &Model<T::Param>,
     state: StateMut<T>,
     tau: &[T],
     ext: External<T>,
@@ -167,7 +167,7 @@ pub fn rk4_len<T: Scalar>(model: &Model<T>) -> usize {
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; the state is left alone then.
 pub fn rk4<T: Scalar>(
-    model: &Model<T>,
+    model: &Model<T::Param>,
     state: StateMut<T>,
     tau: &[T],
     ext: External<T>,
@@ -180,7 +180,7 @@ pub fn rk4<T: Scalar>(
     let (start, rest) = work.split_at_mut(nq + 3 * nv);
     let (slope, rest) = rest.split_at_mut(nq + 3 * nv);
     let (sum, tau_j) = rest.split_at_mut(nq + 3 * nv);
-    let ForwardScratch { bodies, matrix } = scratch;
+    let ForwardScratch { bodies, joint_space, matrix } = scratch;
 
     pack(&state.view(), start, nq, nv)?;
     sum.fill(T::zero());
@@ -190,7 +190,7 @@ pub fn rk4<T: Scalar>(
             let (q_rate, rates) = slope.split_at_mut(nq);
             let (qdd, rates) = rates.split_at_mut(nv);
             let (theta_rate, thetadd) = rates.split_at_mut(nv);
-            let scratch = ForwardScratch { bodies: &mut *bodies, matrix: &mut *matrix };
+            let scratch = ForwardScratch { bodies: &mut *bodies, joint_space: &mut *joint_space, matrix: &mut *matrix };
             let out = Forward { qdd, thetadd, tau_j: &mut *tau_j };
             forward_dynamics(model, state.view(), tau, ext, scratch, out)?;
             position_rate(model, state.q, state.qd, q_rate)?;
@@ -241,7 +241,7 @@ fn unpacked<'a, T>(
 }
 
 /// Without an elastic transmission the motor turns with the joint; a floating root has none.
-fn follow_joints<T: Scalar>(model: &Model<T>, state: StateMut<T>) {
+fn follow_joints<T: Scalar>(model: &Model<T::Param>, state: StateMut<T>) {
     for body in model.bodies {
         let (i, k) = (body.q_index(), body.v_index());
         match body.joint {

@@ -67,10 +67,12 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+pub mod dispatch;
 pub mod dynamics;
 pub mod integrate;
 pub mod model;
 pub mod scalar;
 pub mod spatial;
+mod trig;
 
 pub use scalar::Scalar;

@@ -1,7 +1,11 @@
 //! The number type every algorithm is generic over.
 
+use crate::dispatch::Kernel;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// How many angles [`Scalar::sin_cos_each`] takes at a time.
+pub const ANGLES: usize = 8;
 
 /// A real number as the algorithms see it: arithmetic, a handful of elementary functions, no ordering.
 ///
@@ -19,12 +23,29 @@ pub trait Scalar:
     + AddAssign
     + SubAssign
 {
+    /// What the numbers of a robot's model are while its state is of this type: `f64` for `f64`, and for several states
+    /// side by side, which share the robot.
+    type Param: Scalar<Param = Self::Param>;
+
+    /// A number of the model.
+    fn from_param(x: Self::Param) -> Self;
     /// The constant `x`, rounded to this type.
     fn from_f64(x: f64) -> Self;
+    /// `self · factor + addend`: with one rounding where the processor has an instruction for it, with two elsewhere, never
+    /// by a subroutine.
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
     /// Square root of a non-negative number.
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle [rad].
     fn sin_cos(self) -> (Self, Self);
+    /// Sines and cosines of several angles [rad], which many processors compute side by side.
+    #[inline(always)]
+    fn sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES] {
+        angles.map(Self::sin_cos)
+    }
     /// Angle [rad] of the point with ordinate `self` and abscissa `x`, in `(−π, π]`.
     fn atan2(self, x: Self) -> Self;
     /// Hyperbolic tangent.
@@ -34,30 +55,63 @@ pub trait Scalar:
     /// `less` where `self < threshold`, else `otherwise`, lane by lane, without a branch.
     fn select_less(self, threshold: Self, less: Self, otherwise: Self) -> Self;
 
+    /// Runs an algorithm over numbers of this type in the best arithmetic of the machine at hand.
+    #[inline(always)]
+    fn dispatch<K: Kernel<Self>>(kernel: K) -> K::Output {
+        kernel.run::<Self>()
+    }
+
     /// Zero.
+    #[inline(always)]
     fn zero() -> Self {
         Self::from_f64(0.0)
     }
     /// One.
+    #[inline(always)]
     fn one() -> Self {
         Self::from_f64(1.0)
     }
 }
 
+/// A scalar whose processor may have an instruction for `a · b + c` that only part of a program is compiled for.
+pub trait Fusible: Scalar {
+    /// `self · factor + addend` with one rounding. Fast only inside code compiled for processors that have it.
+    fn fused_mul_add(self, factor: Self, addend: Self) -> Self;
+    /// [`Scalar::sin_cos`] with it.
+    fn fused_sin_cos(self) -> (Self, Self);
+    /// [`Scalar::sin_cos_each`] with it.
+    fn fused_sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES];
+}
+
 macro_rules! float_scalar {
-    ($float:ident, $sqrt:path, $sin:path, $cos:path, $atan2:path, $tanh:path, $exp:path) => {
+    ($float:ident, $trig:ident, $fma:path, $sqrt:path, $atan2:path, $tanh:path, $exp:path) => {
         impl Scalar for $float {
-            #[inline]
+            type Param = Self;
+
+            #[inline(always)]
+            fn from_param(x: Self) -> Self {
+                x
+            }
+            #[inline(always)]
             fn from_f64(x: f64) -> Self {
                 x as $float
             }
-            #[inline]
+            #[inline(always)]
+            #[cfg(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")))]
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
+                self.fused_mul_add(factor, addend)
+            }
+            #[inline(always)]
             fn sqrt(self) -> Self {
                 $sqrt(self)
             }
-            #[inline]
+            #[inline(always)]
             fn sin_cos(self) -> (Self, Self) {
-                ($sin(self), $cos(self))
+                crate::trig::$trig::sin_cos([self])[0]
+            }
+            #[inline(always)]
+            fn sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES] {
+                crate::trig::$trig::sin_cos(angles)
             }
             #[inline]
             fn atan2(self, x: Self) -> Self {
@@ -71,9 +125,28 @@ macro_rules! float_scalar {
             fn exp(self) -> Self {
                 $exp(self)
             }
-            #[inline]
+            #[inline(always)]
             fn select_less(self, threshold: Self, less: Self, otherwise: Self) -> Self {
                 if self < threshold { less } else { otherwise }
+            }
+            #[inline(always)]
+            fn dispatch<K: Kernel<Self>>(kernel: K) -> K::Output {
+                crate::dispatch::on_best_instructions(kernel)
+            }
+        }
+
+        impl Fusible for $float {
+            #[inline(always)]
+            fn fused_mul_add(self, factor: Self, addend: Self) -> Self {
+                $fma(self, factor, addend)
+            }
+            #[inline(always)]
+            fn fused_sin_cos(self) -> (Self, Self) {
+                crate::trig::$trig::sin_cos_in::<crate::dispatch::Fused<Self>, 1>([self])[0]
+            }
+            #[inline(always)]
+            fn fused_sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES] {
+                crate::trig::$trig::sin_cos_in::<crate::dispatch::Fused<Self>, ANGLES>(angles)
             }
         }
     };
@@ -81,16 +154,22 @@ macro_rules! float_scalar {
 
 #[cfg(feature = "std")]
 mod elementary {
-    use super::Scalar;
-    float_scalar!(f32, f32::sqrt, f32::sin, f32::cos, f32::atan2, f32::tanh, f32::exp);
-    float_scalar!(f64, f64::sqrt, f64::sin, f64::cos, f64::atan2, f64::tanh, f64::exp);
+    use super::{ANGLES, Fusible, Kernel, Scalar};
+    float_scalar!(f32, single, f32::mul_add, f32::sqrt, f32::atan2, f32::tanh, f32::exp);
+    float_scalar!(f64, double, f64::mul_add, f64::sqrt, f64::atan2, f64::tanh, f64::exp);
 }
 
 #[cfg(all(feature = "libm", not(feature = "std")))]
 mod elementary {
-    use super::Scalar;
-    float_scalar!(f32, libm::sqrtf, libm::sinf, libm::cosf, libm::atan2f, libm::tanhf, libm::expf);
-    float_scalar!(f64, libm::sqrt, libm::sin, libm::cos, libm::atan2, libm::tanh, libm::exp);
+    use super::{ANGLES, Fusible, Kernel, Scalar};
+
+    /// Without `std` the language offers no fused instruction.
+    #[inline(always)]
+    fn two_roundings<T: Scalar>(a: T, b: T, c: T) -> T {
+        a * b + c
+    }
+    float_scalar!(f32, single, two_roundings, libm::sqrtf, libm::atan2f, libm::tanhf, libm::expf);
+    float_scalar!(f64, double, two_roundings, libm::sqrt, libm::atan2, libm::tanh, libm::exp);
 }
 
 #[cfg(not(any(feature = "std", feature = "libm")))]

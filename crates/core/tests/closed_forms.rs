@@ -162,7 +162,7 @@ fn spring_table_is_monotone_and_conservative() {
     ));
     let robot = Lowered::with_tables(&[body], &table, [0.0; 3], Fidelity::Complete);
     let model = robot.model();
-    let spring = model.bodies()[0].drive().unwrap().elastic.unwrap().spring;
+    let spring = model.bodies()[0].drive.as_ref().unwrap().elastic.unwrap().spring;
     let torque = |x: f64| spring.torque(x, model.knots());
     for [x, y] in table {
         close(torque(x), y);

@@ -61,6 +61,7 @@ fn no_algorithm_allocates() {
     let mut rnea_scratch = vec![RneaScratch::new(); 3];
     let mut crba_scratch = vec![CrbaScratch::new(); 3];
     let mut moving = vec![(Transform::identity(), Motion::zero()); 3];
+    let mut joint_space = vec![JointSpaceScratch::new(); joint_space_len(&model)];
     let (mut m, mut matrix) = (vec![0.0; 64], vec![0.0; matrix_len(&model)]);
     let mut work = vec![0.0; rk4_len(&model).max(euler_len(&model))];
 
@@ -70,7 +71,7 @@ fn no_algorithm_allocates() {
         let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
         aba(&model, state, &tau, ext, &mut aba_scratch, out).unwrap();
         let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
-        let scratch = ForwardScratch { bodies: &mut aba_scratch, matrix: &mut matrix };
+        let scratch = ForwardScratch { bodies: &mut aba_scratch, joint_space: &mut joint_space, matrix: &mut matrix };
         forward_dynamics(&model, state, &tau, ext, scratch, out).unwrap();
         let accel = Acceleration { qdd: &tau, thetadd: &tau };
         let out = Inverse { tau_j: &mut tau_j, tau: &mut thetadd };
@@ -81,15 +82,17 @@ fn no_algorithm_allocates() {
         power(&model, state, &tau, ext, &mut moving).unwrap();
         for _ in 0..3 {
             let state = StateMut { q: &mut q, qd: &mut qd, theta: &mut theta, thetad: &mut thetad };
-            let scratch = ForwardScratch { bodies: &mut aba_scratch, matrix: &mut matrix };
+            let scratch =
+                ForwardScratch { bodies: &mut aba_scratch, joint_space: &mut joint_space, matrix: &mut matrix };
             let n = rk4_len(&model);
             rk4(&model, state, &tau, ext, 1e-4, scratch, &mut work[..n]).unwrap();
             let state = StateMut { q: &mut q, qd: &mut qd, theta: &mut theta, thetad: &mut thetad };
-            let scratch = ForwardScratch { bodies: &mut aba_scratch, matrix: &mut matrix };
+            let scratch =
+                ForwardScratch { bodies: &mut aba_scratch, joint_space: &mut joint_space, matrix: &mut matrix };
             let n = euler_len(&model);
             semi_implicit_euler(&model, state, &tau, ext, 1e-4, scratch, &mut work[..n]).unwrap();
         }
     });
     assert_eq!(count, 0);
-    assert!(q.iter().chain(&qd).all(|x| x.is_finite()));
+    assert!(q.iter().chain(&qd).all(|x: &f64| x.is_finite()));
 }

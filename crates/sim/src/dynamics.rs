@@ -3,8 +3,8 @@
 use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
 use gyroflex::dynamics::{
-    self, AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, Power,
-    RneaScratch, State,
+    self, AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, JointSpaceScratch,
+    Power, RneaScratch, State,
 };
 use gyroflex::integrate::{self, StateMut};
 use gyroflex::model::{Model, SizeError};
@@ -15,6 +15,7 @@ use gyroflex::spatial::{Motion, Transform, Vec3};
 pub struct Dynamics {
     model: OwnedModel,
     aba: Vec<AbaScratch<f64>>,
+    joint_space: Vec<JointSpaceScratch<f64>>,
     matrix: Vec<f64>,
     rnea: Vec<RneaScratch<f64>>,
     crba: Vec<CrbaScratch<f64>>,
@@ -31,6 +32,7 @@ impl Dynamics {
         let matrix = dynamics::matrix_len(&view);
         Self {
             aba: vec![AbaScratch::new(); n],
+            joint_space: vec![JointSpaceScratch::new(); dynamics::joint_space_len(&view)],
             matrix: vec![0.0; matrix],
             rnea: vec![RneaScratch::new(); n],
             crba: vec![CrbaScratch::new(); n],
@@ -76,7 +78,8 @@ impl Dynamics {
         ext: External<f64>,
         out: Forward<f64>,
     ) -> Result<(), Error> {
-        let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
+        let scratch =
+            ForwardScratch { bodies: &mut self.aba, joint_space: &mut self.joint_space, matrix: &mut self.matrix };
         Ok(dynamics::forward_dynamics(&self.model.view(), state, tau, ext, scratch, out)?)
     }
 
@@ -156,7 +159,8 @@ impl Dynamics {
     /// A slice that does not fit the model.
     pub fn rk4(&mut self, state: StateMut<f64>, tau: &[f64], ext: External<f64>, step: f64) -> Result<(), Error> {
         let view = self.model.view();
-        let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
+        let scratch =
+            ForwardScratch { bodies: &mut self.aba, joint_space: &mut self.joint_space, matrix: &mut self.matrix };
         let work = &mut self.work[..integrate::rk4_len(&view)];
         Ok(integrate::rk4(&view, state, tau, ext, step, scratch, work)?)
     }
@@ -173,7 +177,8 @@ impl Dynamics {
         step: f64,
     ) -> Result<(), Error> {
         let view = self.model.view();
-        let scratch = ForwardScratch { bodies: &mut self.aba, matrix: &mut self.matrix };
+        let scratch =
+            ForwardScratch { bodies: &mut self.aba, joint_space: &mut self.joint_space, matrix: &mut self.matrix };
         let work = &mut self.work[..integrate::euler_len(&view)];
         Ok(integrate::semi_implicit_euler(&view, state, tau, ext, step, scratch, work)?)
     }

@@ -39,12 +39,12 @@ impl Equilibrium {
         let model = dynamics.model();
         for body in model.bodies() {
             let (i, k) = (body.q_index(), body.v_index());
-            if body.joint().nv() != 1 {
-                theta[k..k + body.joint().nv()].fill(0.0);
+            if body.joint.nv() != 1 {
+                theta[k..k + body.joint.nv()].fill(0.0);
                 continue;
             }
             theta[k] = q[i];
-            if let Some(drive) = body.drive().filter(|d| d.elastic.is_some()) {
+            if let Some(drive) = body.drive.as_ref().filter(|d| d.elastic.is_some()) {
                 let (position, share) = motor_position(drive, model.knots(), q[i], self.tau_j[k]);
                 theta[k] = position;
                 tau[k] = share * self.tau_j[k];

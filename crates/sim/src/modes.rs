@@ -58,16 +58,16 @@ pub fn modes(dynamics: &mut Dynamics, joints: &Coordinates, q: &[f64], theta: &[
     let mut m = DMatrix::zeros(size, size);
     m.view_mut((0, 0), (nv, nv)).copy_from(&DMatrix::from_row_slice(nv, nv, &m_l));
     let (mut stiffness, mut damping) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
-    for body in model.bodies().iter().filter(|b| b.joint().nv() == 1) {
+    for body in model.bodies().iter().filter(|b| b.joint.nv() == 1) {
         let k = body.v_index();
-        damping[(k, k)] += slope_at_rest(body.friction());
-        if let Some(rotor) = body.drive().filter(|d| d.elastic.is_none()).map(|d| &d.rotor) {
+        damping[(k, k)] += slope_at_rest(&body.friction);
+        if let Some(rotor) = body.drive.as_ref().filter(|d| d.elastic.is_none()).map(|d| &d.rotor) {
             damping[(k, k)] += rotor.gear_ratio * rotor.gear_ratio * slope_at_rest(&rotor.friction);
         }
     }
     for (i, body) in elastic.iter().enumerate() {
         let (k, motor) = (body.v_index(), nv + i);
-        let Some(drive) = body.drive() else { continue };
+        let Some(drive) = body.drive.as_ref() else { continue };
         let (Some(transmission), rotor) = (&drive.elastic, &drive.rotor) else { continue };
         for row in 0..nv {
             m[(row, motor)] = s[row * nv + k];

@@ -137,7 +137,7 @@ impl Buffers {
         let model = dynamics.model();
         // The length of `q` is the model's, which is all that can be wrong here.
         let _ = normalize(&model, &mut self.q);
-        for body in model.bodies().iter().filter(|b| b.joint().nv() == 1) {
+        for body in model.bodies().iter().filter(|b| b.joint.nv() == 1) {
             self.theta[body.v_index()] = self.q[body.q_index()];
             self.thetad[body.v_index()] = self.qd[body.v_index()];
         }

@@ -3,7 +3,7 @@
 use gyroflex::Scalar;
 
 /// A scalar the laws run in.
-pub trait Real: Scalar + Into<f64> {
+pub trait Real: Scalar<Param = Self> + Into<f64> {
     /// `f32` or `f64`, for messages.
     const NAME: &'static str;
     /// The part of a pair of tolerances meant for this scalar.

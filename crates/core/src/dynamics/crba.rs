@@ -7,21 +7,25 @@
 //! Cost O(n·depth). No allocation, no panic, no branch on values.
 
 use super::check_scratch;
+use super::tree::{Support, Tree, turns};
 use crate::Scalar;
-use crate::model::{JointKind, Model, SizeError};
-use crate::spatial::{Force, Motion, SpatialInertia, SymMat3, Transform, Vec3};
+use crate::dispatch::{Kernel, Over};
+use crate::model::{Drive, JointKind, Model, SizeError};
+use crate::spatial::{Force, Motion, SpatialInertia, SymMat3, Turn, Vec3};
 
 /// What the algorithm keeps for one body during a call.
 #[derive(Clone, Copy, Debug)]
 pub struct CrbaScratch<T> {
-    x: Transform<T>,
+    /// Sine and cosine of the joint's angle.
+    theta: Turn<T>,
+    /// `Iᶜ`.
     composite: SpatialInertia<T>,
 }
 
 impl<T: Scalar> CrbaScratch<T> {
     /// Scratch with any content.
     pub fn new() -> Self {
-        Self { x: Transform::identity(), composite: SpatialInertia::zero() }
+        Self { theta: Turn::none(), composite: SpatialInertia::zero() }
     }
 }
 
@@ -39,52 +43,123 @@ impl<T: Scalar> Default for CrbaScratch<T> {
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; nothing is written then.
 pub fn crba<T: Scalar>(
-    model: &Model<T>,
+    model: &Model<T::Param>,
     q: &[T],
     scratch: &mut [CrbaScratch<T>],
     m: &mut [T],
 ) -> Result<(), SizeError> {
-    let nv = model.nv;
     SizeError::check("q", q.len(), model.nq)?;
     check_scratch(model, scratch)?;
-    SizeError::check("m", m.len(), nv * nv)?;
-    m.fill(T::zero());
-
-    // Pass 1: transforms, and each body's own inertia with the elastic rotors it carries put back in.
-    for (body, s) in model.bodies.iter().zip(scratch.iter_mut()) {
-        *s = CrbaScratch { x: body.transform(q), composite: body.inertia };
-    }
-    for drive in model.bodies.iter().filter_map(|b| b.drive.as_ref()).filter(|d| d.elastic.is_some()) {
-        if let Some(mount) = drive.rotor.mount() {
-            scratch[mount].composite.rotational += SymMat3::outer(drive.rotor.axis).scale(drive.rotor.inertia);
-        }
-    }
-
-    for (i, body) in model.bodies.iter().enumerate().rev() {
-        // Pass 2, tips to base: Iᶜ_p += Xᵀ Iᶜ X
-        let CrbaScratch { x, composite } = scratch[i];
-        if let Some(p) = body.parent() {
-            scratch[p].composite = scratch[p].composite + composite.seen_from_parent(x);
-        }
-
-        let k = body.v_index();
-        if body.joint == JointKind::Floating {
-            for row in 0..6 {
-                let mut unit = [T::zero(); 6];
-                unit[row] = T::one();
-                let column = composite.momentum(Motion::from(unit)).to_array();
-                m[(k + row) * nv + k..(k + row) * nv + k + 6].copy_from_slice(&column);
-            }
-            continue;
-        }
-        // F = Iᶜ S
-        let f = match body.joint {
-            JointKind::Prismatic => composite.momentum(Motion { ang: Vec3::zero(), lin: Vec3::z_axis() }),
-            _ => composite.momentum(Motion { ang: Vec3::z_axis(), lin: Vec3::zero() }),
-        };
-        write_branch(model, i, f, |b| scratch[b].x, m);
-    }
+    SizeError::check("m", m.len(), model.nv * model.nv)?;
+    T::dispatch(Crba { model, q, scratch, m });
     Ok(())
+}
+
+struct Crba<'a, 'm, T: Scalar> {
+    model: &'a Model<'m, T::Param>,
+    q: &'a [T],
+    scratch: &'a mut [CrbaScratch<T>],
+    m: &'a mut [T],
+}
+
+impl<T: Scalar> Kernel<T> for Crba<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Over<T>>(self) {
+        let Self { model, q, scratch, m } = self;
+        let (tree, nv) = (Tree::of(model), model.nv);
+        let Some((_, scratch)) = tree.split_bodies_mut(scratch) else { return };
+        let (joints, n) = (tree.joints, tree.joints.len());
+        let Some(q) = tree.positions(q) else { return };
+        let lead = nv - n;
+        m.fill(T::zero());
+
+        // Pass 1: each body's own inertia with the elastic rotors it carries put back in.
+        turns::<T, F, _>(joints, q, scratch, |s, theta| s.theta = theta);
+        let mut base = tree.root.map_or(SpatialInertia::zero(), |root| root.inertia.map(F::from_param));
+        for i in 0..n {
+            scratch[i].composite = joints[i].inertia.map(F::from_param).map(F::store);
+            if let Some(Drive { rotor, elastic: Some(_) }) = &joints[i].drive
+                && rotor.mount.is_some()
+            {
+                let own = SymMat3::outer(rotor.axis_in()).scale(F::from_param(rotor.inertia));
+                match tree.support(rotor.mount, i).joint(i).and_then(|b| scratch.get_mut(b)) {
+                    Some(s) => s.composite.rotational = (s.composite.rotational.map(F::load) + own).map(F::store),
+                    None => base.rotational += own,
+                }
+            }
+        }
+
+        // Pass 2, tips to base: F = Iᶜ S, the column above the diagonal, Iᶜ_p += Xᵀ Iᶜ X
+        for i in (0..n).rev() {
+            let s = &scratch[i];
+            let composite: SpatialInertia<F> = s.composite.map(F::load);
+            let across = |j: usize| {
+                let (joint, s, q) = (joints.get(j)?, scratch.get(j)?, q.get(j)?);
+                Some(joint.across(s.theta.map(F::load), F::load(*q)))
+            };
+            let mut write = |row: usize, entry: F| {
+                for at in [row * nv + lead + i, (lead + i) * nv + row] {
+                    if let Some(m) = m.get_mut(at) {
+                        *m = entry.store();
+                    }
+                }
+            };
+            let mut f = unit_momentum(joints[i].joint, composite);
+            write(lead + i, joints[i].along_joint(f) + joints[i].rigid_reflected_inertia());
+            // F ← Xᵀ F (+ N J n at the carrier),  M_ji = S_jᵀ F
+            let mut at = Some(i);
+            while let Some(j) = at {
+                let Some((x, body)) = across(j).zip(joints.get(j)) else { break };
+                if tree.root.is_none() && body.parent.is_none() {
+                    break;
+                }
+                f = x.inv_force(f);
+                if body.parent == joints[i].carrier() {
+                    f += joints[i].rigid_coupling();
+                }
+                at = tree.support(body.parent, j).joint(j);
+                match at.and_then(|p| joints.get(p).map(|joint| (p, joint))) {
+                    Some((p, joint)) => write(lead + p, joint.along_joint(f)),
+                    None => f.to_array().into_iter().enumerate().for_each(|(row, f)| write(row, f)),
+                }
+            }
+
+            let support = tree.support(joints[i].parent, i);
+            if tree.root.is_none() && matches!(support, Support::Base) {
+                continue;
+            }
+            let Some(x) = across(i) else { continue };
+            let on_parent = x.inv_inertia(composite);
+            match support.joint(i).and_then(|b| scratch.get_mut(b)) {
+                Some(parent) => parent.composite = (parent.composite.map(F::load) + on_parent).map(F::store),
+                None => base = base + on_parent,
+            }
+        }
+
+        if tree.root.is_some() {
+            for column in 0..6 {
+                let mut unit = [F::zero(); 6];
+                unit[column] = F::one();
+                for (row, entry) in base.momentum(Motion::from(unit)).to_array().into_iter().enumerate() {
+                    if let Some(m) = m.get_mut(row * nv + column) {
+                        *m = entry.store();
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// `I S` for a joint along z.
+#[inline(always)]
+fn unit_momentum<F: Scalar>(joint: JointKind, i: SpatialInertia<F>) -> Force<F> {
+    let (o, h) = (F::zero(), i.first_moment);
+    match joint {
+        JointKind::Prismatic => Force { ang: Vec3::new(h.y, -h.x, o), lin: Vec3::new(o, o, i.mass) },
+        _ => Force { ang: Vec3::new(i.rotational.xz, i.rotational.yz, i.rotational.zz), lin: Vec3::new(-h.y, h.x, o) },
+    }
 }
 
 /// `S(q)`: inertial coupling between links (rows) and reflected motor coordinates (columns), `nv × nv` by rows [kg m²].
@@ -93,7 +168,7 @@ pub fn crba<T: Scalar>(
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; nothing is written then.
 pub fn coupling<T: Scalar>(
-    model: &Model<T>,
+    model: &Model<T::Param>,
     q: &[T],
     scratch: &mut [CrbaScratch<T>],
     s: &mut [T],
@@ -104,18 +179,25 @@ pub fn coupling<T: Scalar>(
     SizeError::check("s", s.len(), nv * nv)?;
     s.fill(T::zero());
     for (body, scratch) in model.bodies.iter().zip(scratch.iter_mut()) {
-        scratch.x = body.transform(q);
+        let (sin, cos) = body.angle(q[body.q_index()]).sin_cos();
+        scratch.theta = Turn { sin, cos };
     }
     for body in model.bodies {
         let Some(drive) = body.drive.as_ref().filter(|d| d.elastic.is_some()) else { continue };
-        let r = &drive.rotor;
         // The couple N J n at the carrier, carried on to the base.
-        let mut f = Force::couple(r.axis.scale(r.gear_ratio * r.inertia));
-        let mut at = r.mount();
+        let (column, mut f) = (body.v_index(), Force::couple(drive.rotor.coupling()));
+        let mut at = drive.rotor.mount();
         while let Some(b) = at {
-            write_rows(model, b, body.v_index(), f, s);
-            f = scratch[b].x.inv_force(f);
-            at = model.bodies[b].parent();
+            let on = &model.bodies[b];
+            if on.joint == JointKind::Floating {
+                for (row, entry) in f.to_array().into_iter().enumerate() {
+                    s[row * nv + column] = entry;
+                }
+                break;
+            }
+            s[on.v_index() * nv + column] = on.along_joint(f);
+            f = on.across(scratch[b].theta, q[on.q_index()]).inv_force(f);
+            at = on.parent();
         }
     }
     Ok(())
@@ -126,62 +208,13 @@ pub fn coupling<T: Scalar>(
 ///
 /// # Errors
 /// [`SizeError`] if the slice does not fit the model; nothing is written then.
-pub fn reflected_inertia<T: Scalar>(model: &Model<T>, b: &mut [T]) -> Result<(), SizeError> {
+pub fn reflected_inertia<P: Scalar>(model: &Model<P>, b: &mut [P]) -> Result<(), SizeError> {
     SizeError::check("b", b.len(), model.nv)?;
-    b.fill(T::zero());
+    b.fill(P::zero());
     for body in model.bodies {
         if let Some(drive) = body.drive.as_ref().filter(|d| d.elastic.is_some()) {
             b[body.v_index()] = drive.rotor.reflected_inertia;
         }
     }
     Ok(())
-}
-
-/// Column of joint `i` and its mirror image: `M_ii = Sᵀ F (+ B)`, and on the way to the base `F ← Xᵀ F (+ N J n at the
-/// carrier)`, `M_ji = S_jᵀ F`. `x(b)` is the transform from the parent of body `b`.
-pub(super) fn write_branch<T: Scalar>(
-    model: &Model<T>,
-    i: usize,
-    mut f: Force<T>,
-    x: impl Fn(usize) -> Transform<T>,
-    m: &mut [T],
-) {
-    let body = &model.bodies[i];
-    let k = body.v_index();
-    m[k * model.nv + k] = body.along_joint(f) + body.rigid_reflected_inertia();
-    let carrier = body.drive.as_ref().and_then(|d| d.rotor.mount());
-    let mut at = i;
-    while let Some(p) = model.bodies[at].parent() {
-        f = x(at).inv_force(f);
-        if carrier == Some(p) {
-            f += body.rigid_coupling();
-        }
-        write_symmetric(model, p, k, f, m);
-        at = p;
-    }
-}
-
-/// `Sᵀ_b f` into the rows of body `b`, column `k`.
-#[inline]
-fn write_rows<T: Scalar>(model: &Model<T>, b: usize, k: usize, f: Force<T>, m: &mut [T]) {
-    let (body, nv) = (&model.bodies[b], model.nv);
-    let j = body.v_index();
-    if body.joint == JointKind::Floating {
-        for (row, entry) in f.to_array().into_iter().enumerate() {
-            m[(j + row) * nv + k] = entry;
-        }
-    } else {
-        m[j * nv + k] = body.along_joint(f);
-    }
-}
-
-/// The same, and into the mirrored entries.
-#[inline]
-pub(super) fn write_symmetric<T: Scalar>(model: &Model<T>, b: usize, k: usize, f: Force<T>, m: &mut [T]) {
-    write_rows(model, b, k, f, m);
-    let (body, nv) = (&model.bodies[b], model.nv);
-    let j = body.v_index();
-    for row in j..j + body.joint.nv() {
-        m[k * nv + row] = m[row * nv + k];
-    }
 }

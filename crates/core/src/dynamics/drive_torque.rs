@@ -1,8 +1,16 @@
 //! Torques of one joint's transmission, rotor and friction: all that a drive adds to a joint.
 
-use super::State;
 use crate::Scalar;
 use crate::model::{Body, Elastic, Knot, Rotor};
+
+/// Coordinates of one joint of one degree of freedom and of its motor, reflected.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JointState<T> {
+    pub(super) q: T,
+    pub(super) qd: T,
+    pub(super) theta: T,
+    pub(super) thetad: T,
+}
 
 /// Deflection of an elastic transmission and the torque through it.
 #[derive(Clone, Copy, Debug)]
@@ -18,28 +26,26 @@ pub(super) struct Transmitted<T> {
 }
 
 /// The transmission at its present state.
-#[inline]
+#[inline(always)]
 pub(super) fn transmitted<T: Scalar>(
-    elastic: &Elastic<T>,
-    rotor: &Rotor<T>,
-    i: usize,
-    iq: usize,
-    state: &State<T>,
-    knots: &[Knot<T>],
+    elastic: &Elastic<T::Param>,
+    rotor: &Rotor<T::Param>,
+    at: JointState<T>,
+    knots: &[Knot<T::Param>],
 ) -> Transmitted<T> {
-    let (e, slope) = transmission_error(elastic, rotor, state.theta[i]);
+    let (e, slope) = transmission_error(elastic, rotor, at.theta);
     let on_motor = T::one() - slope;
-    let deflection = state.theta[i] - state.q[iq] - e;
-    let rate = on_motor * state.thetad[i] - state.qd[i];
-    let tau_j = elastic.spring.torque(deflection, knots) + elastic.damping * rate;
+    let deflection = at.theta - at.q - e;
+    let rate = on_motor.mul_add(at.thetad, -at.qd);
+    let tau_j = T::from_param(elastic.damping).mul_add(rate, elastic.spring.torque(deflection, knots));
     Transmitted { deflection, rate, tau_j, on_motor }
 }
 
 /// `e(θ)` and `e'(θ)`, both zero for a perfect gear.
-#[inline]
-pub(super) fn transmission_error<T: Scalar>(elastic: &Elastic<T>, rotor: &Rotor<T>, theta: T) -> (T, T) {
+#[inline(always)]
+pub(super) fn transmission_error<T: Scalar>(elastic: &Elastic<T::Param>, rotor: &Rotor<T::Param>, theta: T) -> (T, T) {
     match &elastic.error {
-        Some(error) => error.value_and_slope(theta, rotor.gear_ratio),
+        Some(error) => error.value_and_slope(theta, T::from_param(rotor.gear_ratio)),
         None => (T::zero(), T::zero()),
     }
 }
@@ -56,21 +62,26 @@ pub(super) struct Drives<T> {
 }
 
 /// Collects the known torques at a joint of one degree of freedom.
-#[inline]
-pub(super) fn drives<T: Scalar>(body: &Body<T>, state: &State<T>, tau: T, tau_ext: T, knots: &[Knot<T>]) -> Drives<T> {
-    let (i, iq) = (body.v_index(), body.q_index());
-    let load = tau_ext - body.friction.torque(state.qd[i]);
+#[inline(always)]
+pub(super) fn drives<T: Scalar>(
+    body: &Body<T::Param>,
+    at: JointState<T>,
+    tau: T,
+    tau_ext: T,
+    knots: &[Knot<T::Param>],
+) -> Drives<T> {
+    let load = tau_ext - body.friction.torque(at.qd);
     let Some(drive) = &body.drive else {
         return Drives { on_link: tau + load, on_rotor: T::zero(), tau_j: tau };
     };
     match &drive.elastic {
         Some(elastic) => {
-            let t = transmitted(elastic, &drive.rotor, i, iq, state, knots);
-            let on_rotor = tau - t.on_motor * t.tau_j - drive.rotor.reflected_friction(state.thetad[i]);
+            let t = transmitted(elastic, &drive.rotor, at, knots);
+            let on_rotor = tau - t.on_motor * t.tau_j - drive.rotor.reflected_friction(at.thetad);
             Drives { on_link: t.tau_j + load, on_rotor, tau_j: t.tau_j }
         }
         None => {
-            let net = tau - drive.rotor.reflected_friction(state.qd[i]);
+            let net = tau - drive.rotor.reflected_friction(at.qd);
             Drives { on_link: net + load, on_rotor: T::zero(), tau_j: net }
         }
     }

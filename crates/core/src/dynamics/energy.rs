@@ -1,10 +1,11 @@
 //! Energies and powers, so that `d(kinetic + gravity + elastic)/dt = supplied − dissipated`.
 
-use super::drive_torque::transmitted;
+use super::drive_torque::{JointState, transmitted};
+use super::kinematics::{transform, velocity};
 use super::{External, State, check_external, check_scratch, check_state};
 use crate::Scalar;
-use crate::model::{JointKind, Model, SizeError};
-use crate::spatial::{Motion, Transform};
+use crate::model::{Body, JointKind, Model, SizeError};
+use crate::spatial::{Motion, SpatialInertia, Transform};
 
 /// Energies of a robot [J].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,7 @@ pub struct Power<T> {
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model.
 pub fn energy<T: Scalar>(
-    model: &Model<T>,
+    model: &Model<T::Param>,
     state: State<T>,
     scratch: &mut [(Transform<T>, Motion<T>)],
 ) -> Result<Energy<T>, SizeError> {
@@ -43,25 +44,27 @@ pub fn energy<T: Scalar>(
     for (i, body) in model.bodies.iter().enumerate() {
         // T = ½ vᵀ I v,   V = −m g·c
         let (x, v) = scratch[i];
-        e.kinetic += half * v.dot(body.inertia.momentum(v));
-        let moment = x.rot.transpose_mul(body.inertia.first_moment) + x.pos.scale(body.inertia.mass);
-        e.gravity -= model.gravity.dot(moment);
+        let inertia: SpatialInertia<T> = body.inertia.map(T::from_param);
+        e.kinetic += half * v.dot(inertia.momentum(v));
+        let moment = x.rot.transpose_mul(inertia.first_moment) + x.pos.scale(inertia.mass);
+        e.gravity -= model.gravity.map(T::from_param).dot(moment);
 
         // Rotors: elastic ½ h²/J, since the carrier's inertia lacks J n nᵀ; rigid ½ B q̇² + N J q̇ n·ω on top of it.
         let Some(drive) = &body.drive else { continue };
         let k = body.v_index();
         let rotor = &drive.rotor;
-        let axial = rotor.mount().map_or(T::zero(), |m| rotor.axis.dot(scratch[m].1.ang));
+        let axial = rotor.mount().map_or(T::zero(), |m| rotor.axis_in().dot(scratch[m].1.ang));
+        let (n, j) = (T::from_param(rotor.gear_ratio), T::from_param(rotor.inertia));
         match &drive.elastic {
             Some(elastic) => {
-                let spin = rotor.gear_ratio * state.thetad[k] + axial;
-                e.kinetic += half * rotor.inertia * spin * spin;
-                let t = transmitted(elastic, rotor, k, body.q_index(), &state, model.knots);
+                let spin = n * state.thetad[k] + axial;
+                e.kinetic += half * j * spin * spin;
+                let t = transmitted(elastic, rotor, joint_state(&state, body), model.knots);
                 e.elastic += elastic.spring.energy(t.deflection, model.knots);
             }
             None => {
-                let spin = rotor.gear_ratio * state.qd[k];
-                e.kinetic += rotor.inertia * spin * (half * spin + axial);
+                let spin = n * state.qd[k];
+                e.kinetic += j * spin * (half * spin + axial);
             }
         }
     }
@@ -73,7 +76,7 @@ pub fn energy<T: Scalar>(
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model.
 pub fn power<T: Scalar>(
-    model: &Model<T>,
+    model: &Model<T::Param>,
     state: State<T>,
     tau: &[T],
     ext: External<T>,
@@ -87,7 +90,7 @@ pub fn power<T: Scalar>(
     let mut p = Power { supplied: T::zero(), dissipated: T::zero() };
     for (i, body) in model.bodies.iter().enumerate() {
         if let Some(wrench) = ext.wrenches.get(i) {
-            p.supplied += scratch[i].1.dot(body.frame.inv_force(*wrench));
+            p.supplied += scratch[i].1.dot(body.frame.map(T::from_param).inv_force(*wrench));
         }
         let start = body.v_index();
         for k in start..start + body.joint.nv() {
@@ -104,8 +107,8 @@ pub fn power<T: Scalar>(
         if let Some(drive) = &body.drive {
             if let Some(elastic) = &drive.elastic {
                 motor_velocity = state.thetad[start];
-                let rate = transmitted(elastic, &drive.rotor, start, body.q_index(), &state, model.knots).rate;
-                p.dissipated += elastic.damping * rate * rate;
+                let rate = transmitted(elastic, &drive.rotor, joint_state(&state, body), model.knots).rate;
+                p.dissipated += T::from_param(elastic.damping) * rate * rate;
             }
             p.dissipated += drive.rotor.reflected_friction(motor_velocity) * motor_velocity;
         }
@@ -114,11 +117,16 @@ pub fn power<T: Scalar>(
     Ok(p)
 }
 
+fn joint_state<T: Scalar>(state: &State<T>, body: &Body<T::Param>) -> JointState<T> {
+    let k = body.v_index();
+    JointState { q: state.q[body.q_index()], qd: state.qd[k], theta: state.theta[k], thetad: state.thetad[k] }
+}
+
 /// Poses in the world and velocities of all bodies, in the recursion's frames.
-fn move_bodies<T: Scalar>(model: &Model<T>, state: &State<T>, scratch: &mut [(Transform<T>, Motion<T>)]) {
+fn move_bodies<T: Scalar>(model: &Model<T::Param>, state: &State<T>, scratch: &mut [(Transform<T>, Motion<T>)]) {
     for (i, body) in model.bodies.iter().enumerate() {
-        let x = body.transform(state.q);
+        let x = transform(body, state.q);
         let (pose, v_p) = body.parent().map_or((x, Motion::zero()), |p| (x.after(scratch[p].0), scratch[p].1));
-        scratch[i] = (pose, x.motion(v_p) + body.joint_velocity(state.qd));
+        scratch[i] = (pose, velocity(body, v_p, state.q, state.qd));
     }
 }

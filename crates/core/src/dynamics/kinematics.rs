@@ -1,9 +1,11 @@
 //! Where links and frames are, how they move, and how joint velocities move them.
 
 use super::check_scratch;
+use super::tree::{RootMotion, Support, Tree, turns};
 use crate::Scalar;
-use crate::model::{JointKind, Model, SizeError};
-use crate::spatial::{Motion, Transform, Vec3};
+use crate::dispatch::{Kernel, Over};
+use crate::model::{Body, JointKind, Model, SizeError};
+use crate::spatial::{Motion, Transform, Turn, Vec3};
 
 /// A frame fixed to a body.
 #[derive(Clone, Copy, Debug)]
@@ -27,37 +29,99 @@ pub enum Axes {
 ///
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; nothing is written then.
-pub fn placements<T: Scalar>(model: &Model<T>, q: &[T], out: &mut [Transform<T>]) -> Result<(), SizeError> {
+pub fn placements<T: Scalar>(model: &Model<T::Param>, q: &[T], out: &mut [Transform<T>]) -> Result<(), SizeError> {
     SizeError::check("q", q.len(), model.nq)?;
     SizeError::check("out", out.len(), model.bodies.len())?;
-    // X_0i = X_i X_0p, in the frames of the recursion; the user's link frames come last.
-    for (i, body) in model.bodies.iter().enumerate() {
-        let x = body.transform(q);
-        out[i] = body.parent().map_or(x, |p| x.after(out[p]));
-    }
-    for (body, pose) in model.bodies.iter().zip(out.iter_mut()) {
-        *pose = body.frame.after(*pose);
-    }
+    T::dispatch(Placements { model, q, out });
     Ok(())
+}
+
+struct Placements<'a, 'm, T: Scalar> {
+    model: &'a Model<'m, T::Param>,
+    q: &'a [T],
+    out: &'a mut [Transform<T>],
+}
+
+impl<T: Scalar> Kernel<T> for Placements<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Over<T>>(self) {
+        let Self { model, q, out } = self;
+        let tree = Tree::of(model);
+        let (Some((root_out, out)), Some(joints_q)) = (tree.split_bodies_mut(out), tree.positions(q)) else { return };
+        turns::<T, F, _>(tree.joints, joints_q, out, |pose, theta| {
+            (pose.pos.x, pose.pos.y) = (theta.sin, theta.cos);
+        });
+        let mut base = Transform::identity();
+        if tree.root.is_some() {
+            let at = RootMotion::<F>::of(q, &[]);
+            base = Transform { rot: at.rot, pos: at.pos };
+        }
+        // X_0i = X_i X_0p, in the frames of the recursion; the user's link frames come last.
+        let mut previous = base;
+        for i in 0..tree.joints.len() {
+            let body = &tree.joints[i];
+            let theta = Turn { sin: F::load(out[i].pos.x), cos: F::load(out[i].pos.y) };
+            let parent = match tree.support(body.parent, i) {
+                Support::Previous => previous,
+                Support::Base => base,
+                Support::Earlier(p) => out.get(p).map_or(base, |pose| pose.map(F::load)),
+            };
+            previous = body.across(theta, F::load(joints_q[i])).after(parent);
+            out[i] = previous.map(F::store);
+        }
+        for (body, pose) in tree.joints.iter().zip(out.iter_mut()) {
+            *pose = body.frame.map(F::from_param).after(pose.map(F::load)).map(F::store);
+        }
+        if let (Some(root), [out, ..]) = (tree.root, root_out) {
+            *out = root.frame.map(F::from_param).after(base).map(F::store);
+        }
+    }
 }
 
 /// Spatial velocity of every link in its own link frame: one motion vector per body, angular first.
 ///
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; nothing is written then.
-pub fn velocities<T: Scalar>(model: &Model<T>, q: &[T], qd: &[T], out: &mut [Motion<T>]) -> Result<(), SizeError> {
+pub fn velocities<T: Scalar>(
+    model: &Model<T::Param>,
+    q: &[T],
+    qd: &[T],
+    out: &mut [Motion<T>],
+) -> Result<(), SizeError> {
     SizeError::check("q", q.len(), model.nq)?;
     SizeError::check("qd", qd.len(), model.nv)?;
     check_scratch(model, out)?;
     // v = X v_p + S q̇
     for (i, body) in model.bodies.iter().enumerate() {
         let v_p = body.parent().map_or(Motion::zero(), |p| out[p]);
-        out[i] = body.transform(q).motion(v_p) + body.joint_velocity(qd);
+        out[i] = velocity(body, v_p, q, qd);
     }
     for (body, v) in model.bodies.iter().zip(out.iter_mut()) {
-        *v = body.frame.motion(*v);
+        *v = body.frame.map(T::from_param).motion(*v);
     }
     Ok(())
+}
+
+/// `X`: from the parent to a body, whatever its joint.
+pub(super) fn transform<T: Scalar>(body: &Body<T::Param>, q: &[T]) -> Transform<T> {
+    let at = body.q_index();
+    if body.joint == JointKind::Floating {
+        let root = RootMotion::<T>::of(&q[at..], &[]);
+        return Transform { rot: root.rot, pos: root.pos };
+    }
+    let (sin, cos) = body.angle(q[at]).sin_cos();
+    body.across(Turn { sin, cos }, q[at]).to_transform()
+}
+
+/// `v = X v_p + S q̇`.
+pub(super) fn velocity<T: Scalar>(body: &Body<T::Param>, v_p: Motion<T>, q: &[T], qd: &[T]) -> Motion<T> {
+    let at = body.v_index();
+    if body.joint == JointKind::Floating {
+        return RootMotion::<T>::of(q, &qd[at..]).v;
+    }
+    body.moved_along_joint(transform(body, q).motion(v_p), qd[at])
 }
 
 /// Jacobian of a frame, `6 × nv` by rows, angular rows first: `J q̇` is the velocity of the frame's origin and the angular
@@ -68,7 +132,7 @@ pub fn velocities<T: Scalar>(model: &Model<T>, q: &[T], qd: &[T], out: &mut [Mot
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model, or the frame's body is not one of its bodies; nothing is written then.
 pub fn jacobian<T: Scalar>(
-    model: &Model<T>,
+    model: &Model<T::Param>,
     poses: &[Transform<T>],
     frame: Frame<T>,
     axes: Axes,
@@ -86,7 +150,7 @@ pub fn jacobian<T: Scalar>(
     while let Some(b) = at {
         let body = &model.bodies[b];
         // From the recursion's frame of the supporting body, where S is an axis, to the target frame.
-        let here = body.frame.inverse().after(poses[b]);
+        let here = body.frame.map(T::from_param).inverse().after(poses[b]);
         let to_target = target.after(here.inverse());
         for c in 0..body.joint.nv() {
             let mut unit = [T::zero(); 6];

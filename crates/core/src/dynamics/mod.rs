@@ -13,12 +13,13 @@ mod forward;
 mod joint_space;
 mod kinematics;
 mod rnea;
+mod tree;
 
 pub use aba::{AbaScratch, aba};
 pub use crba::{CrbaScratch, coupling, crba, reflected_inertia};
 pub use energy::{Energy, Power, energy, power};
-pub use forward::{ForwardScratch, forward_dynamics, matrix_len};
-pub use joint_space::forward_in_joint_space;
+pub use forward::{ForwardScratch, forward_dynamics, joint_space_len, matrix_len};
+pub use joint_space::{JointSpaceScratch, forward_in_joint_space};
 pub use kinematics::{Axes, Frame, jacobian, placements, velocities};
 pub use rnea::{RneaScratch, rnea};
 
@@ -84,14 +85,23 @@ pub struct Inverse<'a, T> {
     pub tau: &'a mut [T],
 }
 
-fn check_state<T: Scalar>(model: &Model<T>, state: &State<T>) -> Result<(), SizeError> {
+impl<T> Forward<'_, T> {
+    fn check<P: Scalar>(&self, model: &Model<P>, tau: &[T]) -> Result<(), SizeError> {
+        SizeError::check("tau", tau.len(), model.nv)?;
+        SizeError::check("qdd", self.qdd.len(), model.nv)?;
+        SizeError::check("thetadd", self.thetadd.len(), model.nv)?;
+        SizeError::check("tau_j", self.tau_j.len(), model.nv)
+    }
+}
+
+fn check_state<P: Scalar, T>(model: &Model<P>, state: &State<T>) -> Result<(), SizeError> {
     SizeError::check("q", state.q.len(), model.nq)?;
     SizeError::check("qd", state.qd.len(), model.nv)?;
     SizeError::check("theta", state.theta.len(), model.nv)?;
     SizeError::check("thetad", state.thetad.len(), model.nv)
 }
 
-fn check_external<T: Scalar>(model: &Model<T>, ext: &External<T>) -> Result<(), SizeError> {
+fn check_external<P: Scalar, T>(model: &Model<P>, ext: &External<T>) -> Result<(), SizeError> {
     if !ext.tau.is_empty() {
         SizeError::check("external tau", ext.tau.len(), model.nv)?;
     }
@@ -101,6 +111,6 @@ fn check_external<T: Scalar>(model: &Model<T>, ext: &External<T>) -> Result<(), 
     Ok(())
 }
 
-fn check_scratch<T: Scalar, S>(model: &Model<T>, scratch: &[S]) -> Result<(), SizeError> {
+fn check_scratch<P: Scalar, S>(model: &Model<P>, scratch: &[S]) -> Result<(), SizeError> {
     SizeError::check("scratch", scratch.len(), model.bodies.len())
 }

@@ -1,8 +1,8 @@
 //! The record of one link and its joint.
 
-use super::{Drive, Friction};
+use super::{Drive, Friction, Rotor};
 use crate::Scalar;
-use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, SpatialInertia, Transform, Vec3};
+use crate::spatial::{ArticulatedInertia, Force, JointTransform, Motion, SpatialInertia, Transform, Turn, Vec3};
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,59 +34,63 @@ impl JointKind {
     }
 }
 
-/// One link, the joint that moves it and the drive of that joint, as the recursions walk them.
-///
-/// Lowering has turned the frame so that the joint axis is its z-axis; only [`Body::frame`] knows the user's frame.
+/// Where a joint sits in its parent: the constant part of its [`JointTransform`].
 #[derive(Clone, Copy, Debug)]
-pub struct Body<T> {
-    pub(crate) parent: u16,
-    pub(crate) joint: JointKind,
-    pub(crate) iq: u16,
-    pub(crate) iv: u16,
-    pub(crate) tree: Transform<T>,
-    pub(crate) inertia: SpatialInertia<T>,
-    pub(crate) frame: Transform<T>,
-    pub(crate) friction: Friction<T>,
-    pub(crate) drive: Option<Drive<T>>,
+pub struct Placement<T> {
+    /// `β`: turn about the parent's z-axis; `None` where the parent's x-axis already is the common normal of both axes.
+    pub beta: Option<Turn<T>>,
+    /// `α`: angle from the parent's z-axis to the joint axis, about x.
+    pub alpha: Turn<T>,
+    /// Origin of the joint in the parent's axes turned by `β` [m].
+    pub offset: Vec3<T>,
+    /// Angle about the joint axis at `q = 0` [rad].
+    pub zero: T,
 }
 
-/// Marks the fixed world where an index of a body stands.
-pub(crate) const WORLD: u16 = u16::MAX;
+/// One link, the joint that moves it and the drive of that joint, as the recursions walk them.
+///
+/// [`RobotSpec::lower`](super::RobotSpec::lower) writes these records from a checked description. Its frames have the joint
+/// axis for z-axis and the common normal with the next axis for x-axis; only [`Body::frame`] knows the user's frame.
+/// Other numbers than it writes give other accelerations, never a panic.
+#[derive(Clone, Copy, Debug)]
+pub struct Body<T> {
+    /// Index of the parent body, an earlier one; `None` is the fixed world.
+    pub parent: Option<u16>,
+    /// How the joint moves.
+    pub joint: JointKind,
+    /// Index of the joint's first entry in `q`: those of the bodies before it come first.
+    pub q_index: u16,
+    /// Index of the joint's first entry in `qd` and all vectors of its length.
+    pub v_index: u16,
+    /// Whether anything but the next body's joint refers to this body: another child, or the rotor of a later joint.
+    pub shared: bool,
+    /// Where the joint sits; of no meaning for a floating root.
+    pub placement: Placement<T>,
+    /// Inertia of the link with what is fixed to it, rotors at rest included; an elastic rotor's `J n nᵀ` excluded.
+    pub inertia: SpatialInertia<T>,
+    /// Friction on the link side of the joint.
+    pub friction: Friction<T>,
+    /// The drive of the joint.
+    pub drive: Option<Drive<T>>,
+    /// From the frame the recursions use to the user's link frame.
+    pub frame: Transform<T>,
+}
 
 impl<T: Scalar> Body<T> {
     /// Index of the parent body; `None` is the fixed world.
+    #[inline(always)]
     pub fn parent(&self) -> Option<usize> {
-        index(self.parent)
-    }
-
-    /// How the joint moves.
-    pub fn joint(&self) -> JointKind {
-        self.joint
+        self.parent.map(usize::from)
     }
 
     /// Index of the joint's first entry in `q`.
     pub fn q_index(&self) -> usize {
-        self.iq as usize
+        self.q_index.into()
     }
 
     /// Index of the joint's first entry in `qd` and all vectors of its length.
     pub fn v_index(&self) -> usize {
-        self.iv as usize
-    }
-
-    /// The drive of the joint.
-    pub fn drive(&self) -> Option<&Drive<T>> {
-        self.drive.as_ref()
-    }
-
-    /// Friction on the link side of the joint.
-    pub fn friction(&self) -> &Friction<T> {
-        &self.friction
-    }
-
-    /// From the frame the recursions use to the user's link frame.
-    pub fn frame(&self) -> &Transform<T> {
-        &self.frame
+        self.v_index.into()
     }
 
     /// Whether the joint has a rotor behind an elastic transmission, and so a motor coordinate of its own.
@@ -94,57 +98,48 @@ impl<T: Scalar> Body<T> {
         self.drive.is_some_and(|d| d.elastic.is_some())
     }
 
-    /// `X`: from the parent to this body at the joint's coordinates in `q`.
-    #[inline]
-    pub(crate) fn transform(&self, q: &[T]) -> Transform<T> {
+    /// Angle about the joint axis at the joint's coordinate `q`.
+    #[inline(always)]
+    pub(crate) fn angle<F: Scalar<Param = T>>(&self, q: F) -> F {
+        let zero = F::from_param(self.placement.zero);
         match self.joint {
-            JointKind::Revolute => {
-                let (s, c) = q[self.iq as usize].sin_cos();
-                let [x, y, z] = self.tree.rot.rows;
-                // Rz(q)ᵀ E_tree touches the first two rows only.
-                let rot = Mat3::from_rows(x.scale(c) + y.scale(s), y.scale(c) - x.scale(s), z);
-                Transform { rot, pos: self.tree.pos }
-            }
-            JointKind::Prismatic => {
-                let axis = self.tree.rot.rows[2];
-                Transform { rot: self.tree.rot, pos: self.tree.pos + axis.scale(q[self.iq as usize]) }
-            }
-            JointKind::Floating => {
-                let i = self.iq as usize;
-                let quaternion = [q[i + 3], q[i + 4], q[i + 5], q[i + 6]];
-                let free = Transform::from_pose(Mat3::from_quaternion(quaternion), Vec3::new(q[i], q[i + 1], q[i + 2]));
-                free.after(self.tree)
-            }
+            JointKind::Revolute => q + zero,
+            _ => zero,
         }
     }
 
-    /// `S qd`: the velocity across the joint, in this body's frame.
-    #[inline]
-    pub(crate) fn joint_velocity(&self, qd: &[T]) -> Motion<T> {
-        let i = self.iv as usize;
-        let mut v = Motion::zero();
-        match self.joint {
-            JointKind::Revolute => v.ang.z = qd[i],
-            JointKind::Prismatic => v.lin.z = qd[i],
-            JointKind::Floating => {
-                v = Motion::from([qd[i], qd[i + 1], qd[i + 2], qd[i + 3], qd[i + 4], qd[i + 5]]);
-            }
+    /// The transform from the parent to this body, the joint being at `q` and its angle turned by `theta`.
+    #[inline(always)]
+    pub(crate) fn across<F: Scalar<Param = T>>(&self, theta: Turn<F>, q: F) -> JointTransform<F> {
+        let at = &self.placement;
+        let alpha = at.alpha.map(F::from_param);
+        let mut offset = at.offset.map(F::from_param);
+        if self.joint == JointKind::Prismatic {
+            // Along the joint axis, which is (0, −sin α, cos α) in the parent's axes turned by β.
+            offset = offset.plus_scaled(q, Vec3::new(F::zero(), -alpha.sin, alpha.cos));
         }
-        v
+        JointTransform { beta: at.beta.map(|b| b.map(F::from_param)), alpha, theta, offset }
     }
 
     /// The same record in another scalar.
     pub(crate) fn map<U>(&self, mut f: impl FnMut(T) -> U) -> Body<U> {
+        let at = &self.placement;
         Body {
             parent: self.parent,
             joint: self.joint,
-            iq: self.iq,
-            iv: self.iv,
-            tree: self.tree.map(&mut f),
+            q_index: self.q_index,
+            v_index: self.v_index,
+            shared: self.shared,
+            placement: Placement {
+                beta: at.beta.map(|b| b.map(&mut f)),
+                alpha: at.alpha.map(&mut f),
+                offset: at.offset.map(&mut f),
+                zero: f(at.zero),
+            },
             inertia: self.inertia.map(&mut f),
-            frame: self.frame.map(&mut f),
             friction: self.friction.map(&mut f),
             drive: self.drive.map(|d| d.map(&mut f)),
+            frame: self.frame.map(&mut f),
         }
     }
 }
@@ -152,8 +147,8 @@ impl<T: Scalar> Body<T> {
 /// What the recursions ask of a joint of one degree of freedom, its axis along z.
 impl<T: Scalar> Body<T> {
     /// `Iᴬ S`.
-    #[inline]
-    pub(crate) fn column_of(&self, ia: &ArticulatedInertia<T>) -> Force<T> {
+    #[inline(always)]
+    pub(crate) fn column_of<F: Scalar>(&self, ia: &ArticulatedInertia<F>) -> Force<F> {
         match self.joint {
             JointKind::Prismatic => {
                 let [x, y, z] = ia.mixed.rows;
@@ -164,8 +159,8 @@ impl<T: Scalar> Body<T> {
     }
 
     /// `Sᵀ f`.
-    #[inline]
-    pub(crate) fn along_joint(&self, f: Force<T>) -> T {
+    #[inline(always)]
+    pub(crate) fn along_joint<F: Scalar>(&self, f: Force<F>) -> F {
         match self.joint {
             JointKind::Prismatic => f.lin.z,
             _ => f.ang.z,
@@ -173,8 +168,8 @@ impl<T: Scalar> Body<T> {
     }
 
     /// `m + S s`.
-    #[inline]
-    pub(crate) fn moved_along_joint(&self, mut m: Motion<T>, s: T) -> Motion<T> {
+    #[inline(always)]
+    pub(crate) fn moved_along_joint<F: Scalar>(&self, mut m: Motion<F>, s: F) -> Motion<F> {
         match self.joint {
             JointKind::Prismatic => m.lin.z += s,
             _ => m.ang.z += s,
@@ -182,25 +177,28 @@ impl<T: Scalar> Body<T> {
         m
     }
 
+    /// A rotor that turns with the joint.
+    #[inline(always)]
+    pub(crate) fn rigid_rotor(&self) -> Option<&Rotor<T>> {
+        self.drive.as_ref().filter(|d| d.elastic.is_none()).map(|d| &d.rotor)
+    }
+
+    /// The body that carries the joint's rotor.
+    #[inline(always)]
+    pub(crate) fn carrier(&self) -> Option<u16> {
+        self.drive.as_ref().and_then(|d| d.rotor.mount)
+    }
+
     /// `B` of a rigidly geared rotor, which turns with the joint; zero without one.
-    #[inline]
-    pub(crate) fn rigid_reflected_inertia(&self) -> T {
-        match &self.drive {
-            Some(drive) if drive.elastic.is_none() => drive.rotor.reflected_inertia,
-            _ => T::zero(),
-        }
+    #[inline(always)]
+    pub(crate) fn rigid_reflected_inertia<F: Scalar<Param = T>>(&self) -> F {
+        self.rigid_rotor().map_or(F::zero(), |r| F::from_param(r.reflected_inertia))
     }
 
     /// `[N J n; 0]` of a rigidly geared rotor, in the frame of its carrier; zero without one.
-    #[inline]
-    pub(crate) fn rigid_coupling(&self) -> Force<T> {
-        match &self.drive {
-            Some(drive) if drive.elastic.is_none() => {
-                let r = &drive.rotor;
-                Force::couple(r.axis.scale(r.gear_ratio * r.inertia))
-            }
-            _ => Force::zero(),
-        }
+    #[inline(always)]
+    pub(crate) fn rigid_coupling<F: Scalar<Param = T>>(&self) -> Force<F> {
+        self.rigid_rotor().map_or(Force::zero(), |r| Force::couple(r.coupling()))
     }
 }
 
@@ -209,9 +207,4 @@ impl Body<f64> {
     pub fn cast<U: Scalar>(&self) -> Body<U> {
         self.map(U::from_f64)
     }
-}
-
-/// The index of a body, `None` for the world.
-pub(crate) fn index(i: u16) -> Option<usize> {
-    (i != WORLD).then_some(i as usize)
 }

@@ -1,6 +1,6 @@
 //! The record of one motor, its gear and its transmission.
 
-use super::{Friction, Spring, body::index};
+use super::{Friction, Spring};
 use crate::Scalar;
 use crate::spatial::Vec3;
 
@@ -19,20 +19,21 @@ pub struct Drive<T> {
 /// and one couple (PHYSICS §3).
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor<T> {
-    pub(crate) mount: u16,
+    /// Index of the body that carries the rotor; `None` is the fixed world.
+    pub mount: Option<u16>,
     /// Spin axis in the carrying body's frame; zero where rotor and carrier do not act on each other (the reduced and the
     /// rigid reflected model, a rotor on the fixed world).
-    pub(crate) axis: Vec3<T>,
+    pub axis: Vec3<T>,
     /// `J`: spin inertia [kg m²], motor side.
     pub inertia: T,
     /// `N`: rotor turns per joint turn.
     pub gear_ratio: T,
     /// `1 / N`.
-    pub(crate) inv_gear_ratio: T,
+    pub inv_gear_ratio: T,
     /// `B = N² J`: reflected inertia [kg m²], link side.
     pub reflected_inertia: T,
     /// `1 / B`.
-    pub(crate) inv_reflected_inertia: T,
+    pub inv_reflected_inertia: T,
     /// Friction on the motor side, in rotor velocity and motor torque.
     pub friction: Friction<T>,
 }
@@ -40,19 +41,33 @@ pub struct Rotor<T> {
 impl<T: Scalar> Rotor<T> {
     /// The body that carries the rotor; `None` is the fixed world.
     pub fn mount(&self) -> Option<usize> {
-        index(self.mount)
+        self.mount.map(usize::from)
     }
 
-    /// The rotor's absolute axial angular momentum `h = N J θ̇ + J n·ω` [N m s], `ω` that of the carrier.
-    #[inline]
-    pub(crate) fn axial_momentum(&self, thetad: T, omega: Vec3<T>) -> T {
-        self.inertia * (self.gear_ratio * thetad + self.axis.dot(omega))
+    /// `n`.
+    #[inline(always)]
+    pub(crate) fn axis_in<F: Scalar<Param = T>>(&self) -> Vec3<F> {
+        self.axis.map(F::from_param)
+    }
+
+    /// `N J n`: what accelerating the joint asks of the carrier, and the carrier of the joint.
+    #[inline(always)]
+    pub(crate) fn coupling<F: Scalar<Param = T>>(&self) -> Vec3<F> {
+        self.axis_in().scale(F::from_param(self.gear_ratio) * F::from_param(self.inertia))
+    }
+
+    /// `J (N θ̇ + n·ω)`: the rotor's absolute axial angular momentum [N m s], `ω` that of the carrier; with accelerations its rate.
+    #[inline(always)]
+    pub(crate) fn axial_momentum<F: Scalar<Param = T>>(&self, thetad: F, omega: Vec3<F>) -> F {
+        let spin = F::from_param(self.gear_ratio).mul_add(thetad, self.axis_in().dot(omega));
+        F::from_param(self.inertia) * spin
     }
 
     /// Motor friction reflected to the link side, `N f(N θ̇)` [N m].
-    #[inline]
-    pub fn reflected_friction(&self, thetad: T) -> T {
-        self.gear_ratio * self.friction.torque(self.gear_ratio * thetad)
+    #[inline(always)]
+    pub fn reflected_friction<F: Scalar<Param = T>>(&self, thetad: F) -> F {
+        let n = F::from_param(self.gear_ratio);
+        n * self.friction.torque(n * thetad)
     }
 }
 
@@ -85,11 +100,12 @@ impl<T: Scalar> TransmissionError<T> {
     }
 
     /// `e(θ)` [rad] and `e'(θ) = de/dθ` [–] at the reflected motor position `θ` of a gear of ratio `N`.
-    #[inline]
-    pub fn value_and_slope(&self, theta: T, gear_ratio: T) -> (T, T) {
-        let cycles = self.cycles_per_rotor_turn * gear_ratio;
-        let (s, c) = (cycles * theta + self.phase).sin_cos();
-        (self.amplitude * s, self.amplitude * cycles * c)
+    #[inline(always)]
+    pub fn value_and_slope<F: Scalar<Param = T>>(&self, theta: F, gear_ratio: F) -> (F, F) {
+        let (amplitude, cycles) =
+            (F::from_param(self.amplitude), F::from_param(self.cycles_per_rotor_turn) * gear_ratio);
+        let (s, c) = cycles.mul_add(theta, F::from_param(self.phase)).sin_cos();
+        (amplitude * s, amplitude * cycles * c)
     }
 
     fn map<U>(self, mut f: impl FnMut(T) -> U) -> TransmissionError<U> {

@@ -16,7 +16,7 @@ pub struct ModelError {
 pub enum Defect {
     /// The parent's index is not smaller than the body's own.
     ParentNotBefore,
-    /// A floating joint elsewhere than at body 0 on the world, or with a drive or friction.
+    /// A floating joint elsewhere than at body 0 on the world, with a drive or friction, or placed: its pose is `q`.
     FloatingNotAtRoot,
     /// A number is infinite or not a number; names which.
     NotFinite(&'static str),
@@ -62,7 +62,10 @@ impl fmt::Display for Defect {
         match self {
             Self::ParentNotBefore => f.write_str("its parent does not come before it"),
             Self::FloatingNotAtRoot => {
-                f.write_str("a floating joint must be the first body, hang on the world and have neither drive nor friction")
+                f.write_str(
+                    "a floating joint must be the first body, hang on the world with the identity for placement (its pose is q) \
+                     and have neither drive nor friction",
+                )
             }
             Self::NotFinite(what) => write!(f, "{what} is not a finite number"),
             Self::NotUnit(what, norm) => write!(f, "{what} has length {norm}, not 1"),

@@ -17,7 +17,7 @@ pub struct Friction<T> {
     /// Velocity at which that excess has faded to 1/e [rad/s], > 0.
     pub stribeck_velocity: T,
     /// Whether `coulomb` or `stribeck` is not zero; decided once, so that smooth robots do not pay for `tanh` and `exp`.
-    pub(crate) dry: bool,
+    pub dry: bool,
 }
 
 impl<T: Scalar> Friction<T> {
@@ -39,15 +39,15 @@ impl<T: Scalar> Friction<T> {
     }
 
     /// The opposing torque at velocity `v` [N m].
-    #[inline]
-    pub fn torque(&self, v: T) -> T {
-        let viscous = self.viscous * v;
+    #[inline(always)]
+    pub fn torque<F: Scalar<Param = T>>(&self, v: F) -> F {
+        let viscous = F::from_param(self.viscous) * v;
         if !self.dry {
             return viscous;
         }
-        let x = v / self.stribeck_velocity;
-        let dry = self.coulomb + self.stribeck * (-(x * x)).exp();
-        viscous + dry * (v / self.smoothing_velocity).tanh()
+        let x = v / F::from_param(self.stribeck_velocity);
+        let dry = F::from_param(self.coulomb) + F::from_param(self.stribeck) * (-(x * x)).exp();
+        dry.mul_add((v / F::from_param(self.smoothing_velocity)).tanh(), viscous)
     }
 
     /// The same friction in another scalar.

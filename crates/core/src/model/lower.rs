@@ -1,12 +1,11 @@
 //! From the user's description to records: frames turned, rotors lumped.
 
-use super::body::WORLD;
 use super::{
-    Body, BodySpec, Defect, Drive, DriveSpec, Elastic, Fidelity, JointKind, Knot, Model, ModelError, RobotSpec, Rotor,
-    Spring, SpringSpec, TransmissionSpec,
+    Body, BodySpec, Defect, Drive, DriveSpec, Elastic, Fidelity, JointKind, Knot, Model, ModelError, Placement,
+    RobotSpec, Rotor, Spring, SpringSpec, TransmissionSpec,
 };
 use crate::Scalar;
-use crate::spatial::{Mat3, SpatialInertia, SymMat3, Transform, Vec3};
+use crate::spatial::{Mat3, SpatialInertia, SymMat3, Transform, Turn, Vec3};
 
 impl RobotSpec<'_> {
     /// How many spring knots [`RobotSpec::lower`] writes at most.
@@ -36,8 +35,8 @@ impl RobotSpec<'_> {
         }
         let (mut iq, mut iv, mut used_knots) = (0, 0, 0);
         for (i, spec) in self.bodies.iter().enumerate() {
+            let frame = self.link_frame(i);
             let parent_frame = spec.parent.map_or(Transform::identity(), |p| bodies[p].frame);
-            let frame = link_frame(spec);
             // From the parent's turned frame to its link frame, on to the joint frame, and into this body's turned frame.
             let tree = frame.inverse().after(spec.placement.after(parent_frame));
             let drive = match &spec.drive {
@@ -48,16 +47,25 @@ impl RobotSpec<'_> {
                 ),
             };
             bodies[i] = Body {
-                parent: spec.parent.map_or(WORLD, |p| p as u16),
+                parent: spec.parent.map(|p| p as u16),
                 joint: spec.joint,
-                iq,
-                iv,
-                tree,
+                q_index: iq,
+                v_index: iv,
+                shared: false,
+                placement: placement(tree),
                 inertia: spec.inertia.seen_from_parent(frame),
                 frame,
                 friction: spec.friction,
                 drive,
             };
+            // A parent, and a rotor's carrier, that is not simply the body before.
+            let carrier = drive.and_then(|d| d.rotor.mount());
+            for other in [spec.parent.filter(|p| p + 1 != i), carrier.filter(|m| m + 1 != i || spec.parent != Some(*m))]
+            {
+                if let Some(other) = other {
+                    bodies[other].shared = true;
+                }
+            }
             iq += spec.joint.nq() as u16;
             iv += spec.joint.nv() as u16;
         }
@@ -82,7 +90,7 @@ impl RobotSpec<'_> {
         };
         let reflected = n * n * spec.rotor.inertia;
         let rotor = Rotor {
-            mount: mount.body.map_or(WORLD, |b| b as u16),
+            mount: mount.body.map(|b| b as u16),
             axis,
             inertia: spec.rotor.inertia,
             gear_ratio: n,
@@ -145,11 +153,12 @@ impl Body<f64> {
     /// A placeholder to fill storage with before lowering.
     pub fn empty() -> Self {
         Self {
-            parent: WORLD,
+            parent: None,
             joint: JointKind::Revolute,
-            iq: 0,
-            iv: 0,
-            tree: Transform::identity(),
+            q_index: 0,
+            v_index: 0,
+            shared: false,
+            placement: Placement { beta: None, alpha: Turn::none(), offset: Vec3::zero(), zero: 0.0 },
             inertia: SpatialInertia::zero(),
             frame: Transform::identity(),
             friction: super::Friction::none(),
@@ -158,23 +167,65 @@ impl Body<f64> {
     }
 }
 
-/// From the frame the recursions use, its z-axis along the joint axis, to the user's link frame.
-fn link_frame(spec: &BodySpec) -> Transform<f64> {
-    if spec.joint == JointKind::Floating {
-        return Transform::identity();
+impl RobotSpec<'_> {
+    /// From the frame the recursions use to the user's link frame: z-axis along the joint axis, x-axis along the common
+    /// normal with the axis of the first joint that hangs on the link.
+    fn link_frame(&self, i: usize) -> Transform<f64> {
+        let spec = &self.bodies[i];
+        if spec.joint == JointKind::Floating {
+            return Transform::identity();
+        }
+        let z = unit(spec.axis);
+        let next = self.bodies.iter().find(|b| b.parent == Some(i)).map(|b| unit(b.placement.rotation() * b.axis));
+        let normal = next.map_or(Vec3::zero(), |next| z.cross(next));
+        // Parallel axes have no common normal but every normal: the coordinate axis least along z makes one, so that an axis
+        // that is a coordinate axis gives a matrix of exact zeros and ones.
+        let a = z.map(f64::abs);
+        let e = if normal.norm() > PARALLEL {
+            normal
+        } else if a.x <= a.y && a.x <= a.z {
+            Vec3::new(1.0, 0.0, 0.0)
+        } else if a.y <= a.z {
+            Vec3::new(0.0, 1.0, 0.0)
+        } else {
+            Vec3::new(0.0, 0.0, 1.0)
+        };
+        let x = unit(e - z.scale(e.dot(z)));
+        let turned = Mat3::from_rows(x, z.cross(x), z);
+        Transform { rot: turned.transpose(), pos: Vec3::zero() }
     }
-    let z = spec.axis.scale(1.0 / Scalar::sqrt(spec.axis.dot(spec.axis)));
-    // The coordinate axis least along z makes x; an axis that is a coordinate axis gives a matrix of exact zeros and ones.
-    let a = z.map(f64::abs);
-    let e = if a.x <= a.y && a.x <= a.z {
-        Vec3::new(1.0, 0.0, 0.0)
-    } else if a.y <= a.z {
-        Vec3::new(0.0, 1.0, 0.0)
+}
+
+/// Sine of an angle below which axes count as parallel, and a direction as one of the frame's own [–].
+const PARALLEL: f64 = 1e-15;
+
+/// `tree`, from parent to joint at `q = 0`, as `Rz(zero) Rx(α) Rz(β)` and the offset.
+fn placement(tree: Transform<f64>) -> Placement<f64> {
+    let z = tree.rot.rows[2];
+    // The joint axis is (sin α sin β, −sin α cos β, cos α) in the parent's axes.
+    let across = Scalar::sqrt(z.x * z.x + z.y * z.y);
+    let beta = if across <= PARALLEL || f64::abs(z.x) <= PARALLEL {
+        Turn::none()
     } else {
-        Vec3::new(0.0, 0.0, 1.0)
+        Turn { sin: z.x / across, cos: -z.y / across }
     };
-    let across = e - z.scale(e.dot(z));
-    let x = across.scale(1.0 / Scalar::sqrt(across.dot(across)));
-    let turned = Mat3::from_rows(x, z.cross(x), z);
-    Transform { rot: turned.transpose(), pos: Vec3::zero() }
+    let sin = if across <= PARALLEL { 0.0 } else { beta.z(z).y };
+    // Right angles are exact.
+    let alpha = match () {
+        _ if sin == 0.0 => Turn { sin: 0.0, cos: if z.z < 0.0 { -1.0 } else { 1.0 } },
+        _ if f64::abs(z.z) <= PARALLEL => Turn { sin: if sin < 0.0 { 1.0 } else { -1.0 }, cos: 0.0 },
+        _ => Turn { sin: -sin, cos: z.z },
+    };
+    // The common normal, which is x in the axes turned by β, seen from the joint: (cos zero, −sin zero, 0).
+    let normal = tree.rot * beta.z_back(Vec3::new(1.0, 0.0, 0.0));
+    Placement {
+        beta: (beta != Turn::none()).then_some(beta),
+        alpha,
+        offset: beta.z(tree.pos),
+        zero: Scalar::atan2(-normal.y, normal.x),
+    }
+}
+
+fn unit(v: Vec3<f64>) -> Vec3<f64> {
+    v.scale(1.0 / v.norm())
 }

@@ -11,7 +11,7 @@ mod spec;
 mod spring;
 mod validate;
 
-pub use body::{Body, JointKind};
+pub use body::{Body, JointKind, Placement};
 pub use drive::{Drive, Elastic, Rotor, TransmissionError};
 pub use error::{Defect, ModelError};
 pub use friction::Friction;

@@ -1,6 +1,6 @@
 //! The view of a robot that every algorithm takes.
 
-use super::{Body, Knot, body::index};
+use super::{Body, Drive, JointKind, Knot, Rotor};
 use crate::Scalar;
 use crate::spatial::Vec3;
 use core::fmt;
@@ -13,17 +13,25 @@ pub struct Model<'a, T> {
     pub(crate) gravity: Vec3<T>,
     pub(crate) nq: usize,
     pub(crate) nv: usize,
+    pub(crate) floating: bool,
     remote_rigid_rotor: bool,
 }
 
 impl<'a, T: Scalar> Model<'a, T> {
     /// A view of records that [`RobotSpec::lower`](super::RobotSpec::lower) wrote, possibly cast to another scalar since.
     /// `gravity` is in world axes [m/s²].
-    pub fn new(bodies: &'a [Body<T>], knots: &'a [Knot<T>], gravity: Vec3<T>) -> Self {
-        let nq = bodies.iter().map(|b| b.joint.nq()).sum();
-        let nv = bodies.iter().map(|b| b.joint.nv()).sum();
-        let remote_rigid_rotor = bodies.iter().any(carries_remotely);
-        Self { bodies, knots, gravity, nq, nv, remote_rigid_rotor }
+    pub const fn new(bodies: &'a [Body<T>], knots: &'a [Knot<T>], gravity: Vec3<T>) -> Self {
+        let floating = match bodies {
+            [root, ..] => matches!(root.joint, JointKind::Floating),
+            [] => false,
+        };
+        let (nq, nv) = if floating { (bodies.len() + 6, bodies.len() + 5) } else { (bodies.len(), bodies.len()) };
+        let (mut remote_rigid_rotor, mut rest) = (false, bodies);
+        while let [body, tail @ ..] = rest {
+            remote_rigid_rotor |= carries_remotely(body);
+            rest = tail;
+        }
+        Self { bodies, knots, gravity, nq, nv, floating, remote_rigid_rotor }
     }
 
     /// The records, parents before children.
@@ -56,6 +64,11 @@ impl<'a, T: Scalar> Model<'a, T> {
         self.nv
     }
 
+    /// Whether the first body moves freely.
+    pub fn is_floating(&self) -> bool {
+        self.floating
+    }
+
     /// Whether a rigidly geared rotor sits on a body other than its joint's parent. Such a rotor couples its joint to bodies
     /// that are not neighbours, and forward dynamics takes the joint-space route (PHYSICS §3).
     pub fn has_remote_rigid_rotor(&self) -> bool {
@@ -64,9 +77,14 @@ impl<'a, T: Scalar> Model<'a, T> {
 }
 
 /// Whether a joint's rotor is rigidly geared and sits on a body other than the joint's parent.
-fn carries_remotely<T: Scalar>(body: &Body<T>) -> bool {
-    let remote = |m: usize| Some(m) != body.parent();
-    body.drive.as_ref().is_some_and(|d| d.elastic.is_none() && index(d.rotor.mount).is_some_and(remote))
+const fn carries_remotely<T: Scalar>(body: &Body<T>) -> bool {
+    match &body.drive {
+        Some(Drive { rotor: Rotor { mount: Some(mount), .. }, elastic: None }) => match body.parent {
+            Some(parent) => parent != *mount,
+            None => true,
+        },
+        _ => false,
+    }
 }
 
 /// A slice of the wrong length was passed to an algorithm.

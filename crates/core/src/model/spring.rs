@@ -9,18 +9,22 @@ pub struct Spring<T> {
     pub stiffness: T,
     /// `K₃` [N m/rad³].
     pub cubic: T,
-    pub(crate) first_knot: u16,
-    pub(crate) knots: u16,
+    /// Index of the table's first piece among the model's knots.
+    pub first_knot: u16,
+    /// Number of pieces; zero for a polynomial.
+    pub knots: u16,
 }
 
 /// One piece of a spring table: right of `start`, with `x = δ − start`, the torque is `c₀ + c₁ x + c₂ x² + c₃ x³`.
 /// The first piece of a table also holds left of its start, where it is straight.
 #[derive(Clone, Copy, Debug)]
 pub struct Knot<T> {
-    pub(crate) start: T,
-    pub(crate) c: [T; 4],
+    /// `start` [rad].
+    pub start: T,
+    /// `c₀ … c₃`.
+    pub c: [T; 4],
     /// Energy at `start`, so that it is zero at `δ = 0` [J].
-    pub(crate) energy: T,
+    pub energy: T,
 }
 
 /// Torque [N m], tangent stiffness [N m/rad] and stored energy [J] of a spring at one deflection.
@@ -33,40 +37,44 @@ struct SpringPoint<T> {
 
 impl<T: Scalar> Spring<T> {
     /// `k(δ)` [N m], `knots` being the model's.
-    #[inline]
-    pub fn torque(&self, deflection: T, knots: &[Knot<T>]) -> T {
+    #[inline(always)]
+    pub fn torque<F: Scalar<Param = T>>(&self, deflection: F, knots: &[Knot<T>]) -> F {
         if self.knots == 0 {
-            return deflection * (self.stiffness + self.cubic * deflection * deflection);
+            let (k, k3) = (F::from_param(self.stiffness), F::from_param(self.cubic));
+            return deflection * k3.mul_add(deflection * deflection, k);
         }
         self.in_table(deflection, knots).torque
     }
 
     /// `k'(δ)` [N m/rad].
-    pub fn slope(&self, deflection: T, knots: &[Knot<T>]) -> T {
+    pub fn slope<F: Scalar<Param = T>>(&self, deflection: F, knots: &[Knot<T>]) -> F {
         if self.knots == 0 {
-            return self.stiffness + T::from_f64(3.0) * self.cubic * deflection * deflection;
+            let (k, k3) = (F::from_param(self.stiffness), F::from_param(self.cubic));
+            return k + F::from_f64(3.0) * k3 * deflection * deflection;
         }
         self.in_table(deflection, knots).slope
     }
 
     /// `∫₀^δ k` [J].
-    pub fn energy(&self, deflection: T, knots: &[Knot<T>]) -> T {
+    pub fn energy<F: Scalar<Param = T>>(&self, deflection: F, knots: &[Knot<T>]) -> F {
         if self.knots == 0 {
-            let d2 = deflection * deflection;
-            return d2 * (T::from_f64(0.5) * self.stiffness + T::from_f64(0.25) * self.cubic * d2);
+            let (k, k3, d2) = (F::from_param(self.stiffness), F::from_param(self.cubic), deflection * deflection);
+            return d2 * (F::from_f64(0.5) * k + F::from_f64(0.25) * k3 * d2);
         }
         self.in_table(deflection, knots).energy
     }
 
     /// Walks all pieces and keeps the last one that starts left of `deflection`: the same work for every deflection.
-    fn in_table(&self, deflection: T, knots: &[Knot<T>]) -> SpringPoint<T> {
+    #[inline(never)]
+    fn in_table<F: Scalar<Param = T>>(&self, deflection: F, knots: &[Knot<T>]) -> SpringPoint<F> {
         let first = self.first_knot as usize;
         let table = knots.get(first..first + self.knots as usize).unwrap_or(&[]);
-        let mut point = SpringPoint { torque: T::zero(), slope: T::zero(), energy: T::zero() };
+        let mut point = SpringPoint { torque: F::zero(), slope: F::zero(), energy: F::zero() };
         for (i, knot) in table.iter().enumerate() {
             let here = knot.at(deflection);
             let before = if i == 0 { here } else { point };
-            let pick = |old, new| deflection.select_less(knot.start, old, new);
+            let start = F::from_param(knot.start);
+            let pick = |old, new| deflection.select_less(start, old, new);
             point = SpringPoint {
                 torque: pick(before.torque, here.torque),
                 slope: pick(before.slope, here.slope),
@@ -82,14 +90,16 @@ impl<T: Scalar> Spring<T> {
 }
 
 impl<T: Scalar> Knot<T> {
-    fn at(&self, deflection: T) -> SpringPoint<T> {
-        let x = deflection - self.start;
-        let [c0, c1, c2, c3] = self.c;
-        let f = T::from_f64;
+    #[inline(always)]
+    fn at<F: Scalar<Param = T>>(&self, deflection: F) -> SpringPoint<F> {
+        let x = deflection - F::from_param(self.start);
+        let [c0, c1, c2, c3] = self.c.map(F::from_param);
+        let f = F::from_f64;
         SpringPoint {
             torque: c0 + x * (c1 + x * (c2 + x * c3)),
             slope: c1 + x * (f(2.0) * c2 + x * f(3.0) * c3),
-            energy: self.energy + x * (c0 + x * (f(0.5) * c1 + x * (f(1.0 / 3.0) * c2 + x * f(0.25) * c3))),
+            energy: F::from_param(self.energy)
+                + x * (c0 + x * (f(0.5) * c1 + x * (f(1.0 / 3.0) * c2 + x * f(0.25) * c3))),
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Everything that can be wrong with a description is found here, so that the algorithms need no checks.
 
-use super::body::WORLD;
 use super::{BodySpec, Defect, DriveSpec, Friction, JointKind, ModelError, RobotSpec, SpringSpec, TransmissionSpec};
 use crate::spatial::{Mat3, SpatialInertia, SymMat3, Transform, Vec3};
 
@@ -17,7 +16,7 @@ impl RobotSpec<'_> {
     /// # Errors
     /// [`ModelError`] names the body and the defect.
     pub fn validate(&self) -> Result<(), ModelError> {
-        if self.bodies.len() >= WORLD as usize {
+        if self.bodies.len() >= usize::from(u16::MAX) {
             return Err(ModelError { body: 0, defect: Defect::TooFewBodies });
         }
         for (i, body) in self.bodies.iter().enumerate() {
@@ -40,7 +39,11 @@ impl RobotSpec<'_> {
         check_friction(&body.friction)?;
         if body.joint == JointKind::Floating {
             let lone = i == 0 && body.parent.is_none() && body.drive.is_none() && body.friction == Friction::none();
-            return if lone { Ok(()) } else { Err(Defect::FloatingNotAtRoot) };
+            return if lone && body.placement == Transform::identity() {
+                Ok(())
+            } else {
+                Err(Defect::FloatingNotAtRoot)
+            };
         }
         check_unit("the joint axis", body.axis)?;
         match &body.drive {

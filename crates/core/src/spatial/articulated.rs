@@ -1,8 +1,8 @@
 //! Inertia of an articulated body.
 
-use super::{Force, Mat3, Motion, SpatialInertia, SymMat3, Transform, Vec3};
+use super::{Force, Mat3, Motion, SpatialInertia, SymMat3, Vec3};
 use crate::Scalar;
-use core::ops::AddAssign;
+use core::ops::{Add, AddAssign};
 
 /// The apparent inertia of a body with a subtree hanging on it (RBDA eq. 7.1): `[[I, H], [Hᵀ, M]]`, as 21 numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,56 +17,91 @@ pub struct ArticulatedInertia<T> {
 
 impl<T: Scalar> ArticulatedInertia<T> {
     /// Of nothing.
-    #[inline]
+    #[inline(always)]
     pub fn zero() -> Self {
         Self { ang: SymMat3::zero(), mixed: Mat3::zero(), lin: SymMat3::zero() }
     }
 
     /// `Iᴬ a`: the force that gives the acceleration `a`.
-    #[inline]
+    #[inline(always)]
     pub fn force(&self, a: Motion<T>) -> Force<T> {
         Force { ang: self.ang * a.ang + self.mixed * a.lin, lin: self.mixed.transpose_mul(a.ang) + self.lin * a.lin }
     }
 
     /// `Iᴬ − s U Uᵀ`.
-    #[inline]
+    #[inline(always)]
     pub fn minus_outer(&self, u: Force<T>, s: T) -> Self {
-        let (su_ang, su_lin) = (u.ang.scale(s), u.lin.scale(s));
         Self {
-            ang: self.ang - Mat3::outer(u.ang, su_ang).symmetric(),
-            mixed: self.mixed - Mat3::outer(u.ang, su_lin),
-            lin: self.lin - Mat3::outer(u.lin, su_lin).symmetric(),
+            ang: self.ang - SymMat3::outer(u.ang).scale(s),
+            mixed: self.mixed - Mat3::outer(u.ang, u.lin.scale(s)),
+            lin: self.lin - SymMat3::outer(u.lin).scale(s),
         }
     }
 
-    /// `Xᵀ Iᴬ X`: the same inertia seen from the parent frame of `x` (RBDA table 2.2 and §A.2).
-    #[inline]
-    pub fn seen_from_parent(&self, x: &Transform<T>) -> Self {
-        // Turned into the parent's axes.
-        let ang = self.ang.congruence(x.rot);
-        let mixed = x.rot.transpose() * (self.mixed * x.rot);
-        let lin = self.lin.congruence(x.rot);
-        // Moved to the parent's origin: H' = H + r× M,  I' = I − H r× + r× H'ᵀ.
-        let r = Mat3::skew(x.pos);
-        let moved = mixed + r * lin.to_mat3();
-        let ang = ang + (r * moved.transpose() - mixed * r).symmetric();
-        Self { ang, mixed: moved, lin }
+    /// The same inertia about the origin of a frame from which the present origin is at `r` (RBDA §A.2).
+    #[inline(always)]
+    pub fn moved(&self, r: Vec3<T>) -> Self {
+        let ([h0, h1, h2], m) = (self.mixed.rows, self.lin.to_mat3().rows);
+        // H' = H + r× M
+        let g0 = h0.plus_scaled(r.y, m[2]).plus_scaled(-r.z, m[1]);
+        let g1 = h1.plus_scaled(r.z, m[0]).plus_scaled(-r.x, m[2]);
+        let g2 = h2.plus_scaled(r.x, m[1]).plus_scaled(-r.y, m[0]);
+        // I' = I − H r× + r× H'ᵀ: entry (i, j) gains (r × h_i)_j + (r × h'_j)_i
+        let (d0, d1, d2) = (g0 + h0, g1 + h1, g2 + h2);
+        let x = |a: Vec3<T>, c: T| r.y.mul_add(a.z, (-r.z).mul_add(a.y, c));
+        let y = |a: Vec3<T>, c: T| r.z.mul_add(a.x, (-r.x).mul_add(a.z, c));
+        let z = |a: Vec3<T>, c: T| r.x.mul_add(a.y, (-r.y).mul_add(a.x, c));
+        let ang = SymMat3 {
+            xx: x(d0, self.ang.xx),
+            yy: y(d1, self.ang.yy),
+            zz: z(d2, self.ang.zz),
+            xy: x(g1, y(h0, self.ang.xy)),
+            xz: x(g2, z(h0, self.ang.xz)),
+            yz: y(g2, z(h1, self.ang.yz)),
+        };
+        Self { ang, mixed: Mat3::from_rows(g0, g1, g2), lin: self.lin }
+    }
+
+    /// `Iᴬ + I`, the latter of a rigid body.
+    #[inline(always)]
+    pub fn plus_rigid(&self, i: SpatialInertia<T>) -> Self {
+        let ([a, b, c], h, m) = (self.mixed.rows, i.first_moment, i.mass);
+        let mixed = Mat3::from_rows(
+            Vec3::new(a.x, a.y - h.z, a.z + h.y),
+            Vec3::new(b.x + h.z, b.y, b.z - h.x),
+            Vec3::new(c.x - h.y, c.y + h.x, c.z),
+        );
+        let (mut lin, ang) = (self.lin, self.ang + i.rotational);
+        (lin.xx, lin.yy, lin.zz) = (lin.xx + m, lin.yy + m, lin.zz + m);
+        Self { ang, mixed, lin }
+    }
+
+    /// The same inertia in other numbers.
+    #[inline(always)]
+    pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> ArticulatedInertia<U> {
+        ArticulatedInertia { ang: self.ang.map(&mut f), mixed: self.mixed.map(&mut f), lin: self.lin.map(&mut f) }
     }
 }
 
 impl<T: Scalar> From<SpatialInertia<T>> for ArticulatedInertia<T> {
-    #[inline]
+    #[inline(always)]
     fn from(i: SpatialInertia<T>) -> Self {
         Self { ang: i.rotational, mixed: Mat3::skew(i.first_moment), lin: SymMat3::diagonal(i.mass, i.mass, i.mass) }
     }
 }
 
+impl<T: Scalar> Add for ArticulatedInertia<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self { ang: self.ang + b.ang, mixed: self.mixed + b.mixed, lin: self.lin + b.lin }
+    }
+}
+
 impl<T: Scalar> AddAssign for ArticulatedInertia<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, b: Self) {
-        self.ang += b.ang;
-        self.mixed = self.mixed + b.mixed;
-        self.lin += b.lin;
+        *self = *self + b;
     }
 }
 

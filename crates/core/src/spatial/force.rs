@@ -15,25 +15,37 @@ pub struct Force<T> {
 
 impl<T: Scalar> Force<T> {
     /// The zero vector.
-    #[inline]
+    #[inline(always)]
     pub fn zero() -> Self {
         Self { ang: Vec3::zero(), lin: Vec3::zero() }
     }
 
     /// A pure couple.
-    #[inline]
+    #[inline(always)]
     pub fn couple(ang: Vec3<T>) -> Self {
         Self { ang, lin: Vec3::zero() }
     }
 
     /// `s f`.
-    #[inline]
+    #[inline(always)]
     pub fn scale(self, s: T) -> Self {
         Self { ang: self.ang.scale(s), lin: self.lin.scale(s) }
     }
 
+    /// `f + s g`.
+    #[inline(always)]
+    pub fn plus_scaled(self, s: T, g: Self) -> Self {
+        Self { ang: self.ang.plus_scaled(s, g.ang), lin: self.lin.plus_scaled(s, g.lin) }
+    }
+
+    /// The same vector in other numbers.
+    #[inline(always)]
+    pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> Force<U> {
+        Force { ang: self.ang.map(&mut f), lin: self.lin.map(&mut f) }
+    }
+
     /// The six coordinates, angular first.
-    #[inline]
+    #[inline(always)]
     pub fn to_array(self) -> [T; 6] {
         [self.ang.x, self.ang.y, self.ang.z, self.lin.x, self.lin.y, self.lin.z]
     }
@@ -47,7 +59,7 @@ impl<T> From<[T; 6]> for Force<T> {
 
 impl<T: Scalar> Add for Force<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self { ang: self.ang + b.ang, lin: self.lin + b.lin }
     }
@@ -55,7 +67,7 @@ impl<T: Scalar> Add for Force<T> {
 
 impl<T: Scalar> Sub for Force<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, b: Self) -> Self {
         Self { ang: self.ang - b.ang, lin: self.lin - b.lin }
     }
@@ -63,21 +75,21 @@ impl<T: Scalar> Sub for Force<T> {
 
 impl<T: Scalar> Neg for Force<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Self { ang: -self.ang, lin: -self.lin }
     }
 }
 
 impl<T: Scalar> AddAssign for Force<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, b: Self) {
         *self = *self + b;
     }
 }
 
 impl<T: Scalar> SubAssign for Force<T> {
-    #[inline]
+    #[inline(always)]
     fn sub_assign(&mut self, b: Self) {
         *self = *self - b;
     }

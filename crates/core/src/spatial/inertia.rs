@@ -1,6 +1,6 @@
 //! Inertia of a rigid body.
 
-use super::{Force, Mat3, Motion, SymMat3, Transform, Vec3};
+use super::{Force, Motion, SymMat3, Transform, Vec3};
 use crate::Scalar;
 use core::ops::Add;
 
@@ -17,7 +17,7 @@ pub struct SpatialInertia<T> {
 
 impl<T: Scalar> SpatialInertia<T> {
     /// Of a body without mass.
-    #[inline]
+    #[inline(always)]
     pub fn zero() -> Self {
         Self { mass: T::zero(), first_moment: Vec3::zero(), rotational: SymMat3::zero() }
     }
@@ -29,7 +29,7 @@ impl<T: Scalar> SpatialInertia<T> {
     }
 
     /// `I v`: the momentum of the body moving with velocity `v`.
-    #[inline]
+    #[inline(always)]
     pub fn momentum(self, v: Motion<T>) -> Force<T> {
         Force {
             ang: self.rotational * v.ang + self.first_moment.cross(v.lin),
@@ -38,19 +38,36 @@ impl<T: Scalar> SpatialInertia<T> {
     }
 
     /// The same inertia seen from the frame `p`, where `self` is given in the frame `i` of `x` (from `p` to `i`).
+    #[inline(always)]
     pub fn seen_from_parent(self, x: Transform<T>) -> Self {
-        // The body-fixed moment h = m c turned into the parent's axes, then moved by r:
-        //   I' = Eᵀ I E + 2 (r·h) 1 − (r hᵀ + h rᵀ) + m (r·r 1 − r rᵀ).
-        let (r, h) = (x.pos, x.rot.transpose_mul(self.first_moment));
-        let dot = T::from_f64(2.0) * r.dot(h);
-        let cross = SymMat3::diagonal(dot, dot, dot) - (Mat3::outer(r, h) + Mat3::outer(h, r)).symmetric();
-        let shift = cross + parallel_axis(r).scale(self.mass);
-        let moved = h + r.scale(self.mass);
-        Self { mass: self.mass, first_moment: moved, rotational: x.inv_tensor(self.rotational) + shift }
+        let turned = Self {
+            mass: self.mass,
+            first_moment: x.rot.transpose_mul(self.first_moment),
+            rotational: x.inv_tensor(self.rotational),
+        };
+        turned.moved(x.pos)
+    }
+
+    /// The same inertia about the origin of a frame from which the present origin is at `r`.
+    #[inline(always)]
+    pub fn moved(self, r: Vec3<T>) -> Self {
+        // h' = h + m r,   I' = I + (r·h + r·h') 1 − r hᵀ − h' rᵀ
+        let (h, moved) = (self.first_moment, self.first_moment.plus_scaled(self.mass, r));
+        let i = self.rotational;
+        let (xx, yy, zz) = (r.x * (h.x + moved.x), r.y * (h.y + moved.y), r.z * (h.z + moved.z));
+        let rotational = SymMat3 {
+            xx: i.xx + (yy + zz),
+            yy: i.yy + (xx + zz),
+            zz: i.zz + (xx + yy),
+            xy: (-r.x).mul_add(h.y, (-r.y).mul_add(moved.x, i.xy)),
+            xz: (-r.x).mul_add(h.z, (-r.z).mul_add(moved.x, i.xz)),
+            yz: (-r.y).mul_add(h.z, (-r.z).mul_add(moved.y, i.yz)),
+        };
+        Self { mass: self.mass, first_moment: moved, rotational }
     }
 
     /// The same inertia with other numbers for entries.
-    #[inline]
+    #[inline(always)]
     pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> SpatialInertia<U> {
         SpatialInertia {
             mass: f(self.mass),
@@ -68,7 +85,7 @@ fn parallel_axis<T: Scalar>(c: Vec3<T>) -> SymMat3<T> {
 
 impl<T: Scalar> Add for SpatialInertia<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self {
             mass: self.mass + b.mass,

@@ -13,7 +13,7 @@ pub struct Mat3<T> {
 
 impl<T> Mat3<T> {
     /// The matrix with the given rows.
-    #[inline]
+    #[inline(always)]
     pub const fn from_rows(r0: Vec3<T>, r1: Vec3<T>, r2: Vec3<T>) -> Self {
         Self { rows: [r0, r1, r2] }
     }
@@ -21,20 +21,20 @@ impl<T> Mat3<T> {
 
 impl<T: Scalar> Mat3<T> {
     /// The zero matrix.
-    #[inline]
+    #[inline(always)]
     pub fn zero() -> Self {
         Self { rows: [Vec3::zero(); 3] }
     }
 
     /// The identity.
-    #[inline]
+    #[inline(always)]
     pub fn identity() -> Self {
         let (o, i) = (T::zero(), T::one());
         Self::from_rows(Vec3::new(i, o, o), Vec3::new(o, i, o), Vec3::new(o, o, i))
     }
 
     /// The cross-product matrix `a×`, so that `skew(a) b = a × b`.
-    #[inline]
+    #[inline(always)]
     pub fn skew(a: Vec3<T>) -> Self {
         let o = T::zero();
         Self::from_rows(Vec3::new(o, -a.z, a.y), Vec3::new(a.z, o, -a.x), Vec3::new(-a.y, a.x, o))
@@ -75,26 +75,26 @@ impl<T: Scalar> Mat3<T> {
     }
 
     /// The transpose.
-    #[inline]
+    #[inline(always)]
     pub fn transpose(self) -> Self {
         let [a, b, c] = self.rows;
         Self::from_rows(Vec3::new(a.x, b.x, c.x), Vec3::new(a.y, b.y, c.y), Vec3::new(a.z, b.z, c.z))
     }
 
     /// `Aᵀ b`, without forming the transpose.
-    #[inline]
+    #[inline(always)]
     pub fn transpose_mul(self, b: Vec3<T>) -> Vec3<T> {
         self.rows[0].scale(b.x) + self.rows[1].scale(b.y) + self.rows[2].scale(b.z)
     }
 
     /// `s A`.
-    #[inline]
+    #[inline(always)]
     pub fn scale(self, s: T) -> Self {
         Self { rows: self.rows.map(|r| r.scale(s)) }
     }
 
     /// The symmetric part `(A + Aᵀ) / 2` of a matrix that is symmetric but for rounding.
-    #[inline]
+    #[inline(always)]
     pub fn symmetric(self) -> SymMat3<T> {
         let [a, b, c] = self.rows;
         let half = T::from_f64(0.5);
@@ -102,13 +102,13 @@ impl<T: Scalar> Mat3<T> {
     }
 
     /// The outer product `a bᵀ`.
-    #[inline]
+    #[inline(always)]
     pub fn outer(a: Vec3<T>, b: Vec3<T>) -> Self {
         Self::from_rows(b.scale(a.x), b.scale(a.y), b.scale(a.z))
     }
 
     /// The same matrix with other numbers for entries.
-    #[inline]
+    #[inline(always)]
     pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> Mat3<U> {
         Mat3 { rows: self.rows.map(|r| r.map(&mut f)) }
     }
@@ -116,7 +116,7 @@ impl<T: Scalar> Mat3<T> {
 
 impl<T: Scalar> Mul<Vec3<T>> for Mat3<T> {
     type Output = Vec3<T>;
-    #[inline]
+    #[inline(always)]
     fn mul(self, b: Vec3<T>) -> Vec3<T> {
         Vec3::new(self.rows[0].dot(b), self.rows[1].dot(b), self.rows[2].dot(b))
     }
@@ -124,7 +124,7 @@ impl<T: Scalar> Mul<Vec3<T>> for Mat3<T> {
 
 impl<T: Scalar> Mul for Mat3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, b: Self) -> Self {
         Self { rows: self.rows.map(|row| b.transpose_mul(row)) }
     }
@@ -132,7 +132,7 @@ impl<T: Scalar> Mul for Mat3<T> {
 
 impl<T: Scalar> Add for Mat3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self::from_rows(self.rows[0] + b.rows[0], self.rows[1] + b.rows[1], self.rows[2] + b.rows[2])
     }
@@ -140,7 +140,7 @@ impl<T: Scalar> Add for Mat3<T> {
 
 impl<T: Scalar> Sub for Mat3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, b: Self) -> Self {
         Self::from_rows(self.rows[0] - b.rows[0], self.rows[1] - b.rows[1], self.rows[2] - b.rows[2])
     }

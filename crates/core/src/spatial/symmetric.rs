@@ -23,32 +23,32 @@ pub struct SymMat3<T> {
 
 impl<T: Scalar> SymMat3<T> {
     /// The zero matrix.
-    #[inline]
+    #[inline(always)]
     pub fn zero() -> Self {
         Self::diagonal(T::zero(), T::zero(), T::zero())
     }
 
     /// The diagonal matrix of three entries.
-    #[inline]
+    #[inline(always)]
     pub fn diagonal(xx: T, yy: T, zz: T) -> Self {
         let o = T::zero();
         Self { xx, yy, zz, xy: o, xz: o, yz: o }
     }
 
     /// The outer product `a aᵀ`.
-    #[inline]
+    #[inline(always)]
     pub fn outer(a: Vec3<T>) -> Self {
         Self { xx: a.x * a.x, yy: a.y * a.y, zz: a.z * a.z, xy: a.x * a.y, xz: a.x * a.z, yz: a.y * a.z }
     }
 
     /// `s A`.
-    #[inline]
+    #[inline(always)]
     pub fn scale(self, s: T) -> Self {
         self.map(|a| a * s)
     }
 
     /// The same matrix with all nine entries stored.
-    #[inline]
+    #[inline(always)]
     pub fn to_mat3(self) -> Mat3<T> {
         Mat3::from_rows(
             Vec3::new(self.xx, self.xy, self.xz),
@@ -58,7 +58,7 @@ impl<T: Scalar> SymMat3<T> {
     }
 
     /// `Eᵀ A E`, which turns a tensor given in the axes of `E`'s rows into the axes of its columns.
-    #[inline]
+    #[inline(always)]
     pub fn congruence(self, e: Mat3<T>) -> Self {
         // Only the six entries on and above the diagonal of Eᵀ (A E).
         let [a, b, c] = (self.to_mat3() * e).rows;
@@ -78,7 +78,7 @@ impl<T: Scalar> SymMat3<T> {
     }
 
     /// The same matrix with other numbers for entries.
-    #[inline]
+    #[inline(always)]
     pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> SymMat3<U> {
         SymMat3 { xx: f(self.xx), yy: f(self.yy), zz: f(self.zz), xy: f(self.xy), xz: f(self.xz), yz: f(self.yz) }
     }
@@ -86,19 +86,19 @@ impl<T: Scalar> SymMat3<T> {
 
 impl<T: Scalar> Mul<Vec3<T>> for SymMat3<T> {
     type Output = Vec3<T>;
-    #[inline]
+    #[inline(always)]
     fn mul(self, b: Vec3<T>) -> Vec3<T> {
         Vec3::new(
-            self.xx * b.x + self.xy * b.y + self.xz * b.z,
-            self.xy * b.x + self.yy * b.y + self.yz * b.z,
-            self.xz * b.x + self.yz * b.y + self.zz * b.z,
+            self.xx.mul_add(b.x, self.xy.mul_add(b.y, self.xz * b.z)),
+            self.xy.mul_add(b.x, self.yy.mul_add(b.y, self.yz * b.z)),
+            self.xz.mul_add(b.x, self.yz.mul_add(b.y, self.zz * b.z)),
         )
     }
 }
 
 impl<T: Scalar> Add for SymMat3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self {
             xx: self.xx + b.xx,
@@ -113,7 +113,7 @@ impl<T: Scalar> Add for SymMat3<T> {
 
 impl<T: Scalar> Sub for SymMat3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, b: Self) -> Self {
         Self {
             xx: self.xx - b.xx,
@@ -127,7 +127,7 @@ impl<T: Scalar> Sub for SymMat3<T> {
 }
 
 impl<T: Scalar> AddAssign for SymMat3<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, b: Self) {
         *self = *self + b;
     }

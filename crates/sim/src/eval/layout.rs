@@ -29,9 +29,9 @@ impl Layout {
         let mut joints = Vec::with_capacity(model.nv());
         let mut ratios = Vec::with_capacity(model.nv());
         for (joint, body) in robot.joints.iter().zip(model.bodies()) {
-            for _ in 0..body.joint().nv() {
+            for _ in 0..body.joint.nv() {
                 joints.push(joint.name.clone());
-                ratios.push(body.drive().map_or(1.0, |d| d.rotor.gear_ratio));
+                ratios.push(body.drive.as_ref().map_or(1.0, |d| d.rotor.gear_ratio));
             }
         }
         let has_elastic = model.bodies().iter().any(|b| b.is_elastic());

@@ -48,7 +48,7 @@ impl Simulation {
         for (i, joint) in self.joints.joints.iter().enumerate() {
             let model = self.dynamics.model();
             let body = &model.bodies()[joint.body];
-            let Some(drive) = body.drive().filter(|_| body.is_elastic()) else { continue };
+            let Some(drive) = body.drive.as_ref().filter(|_| body.is_elastic()) else { continue };
             let damping = self.control.damping_rate(i, drive.rotor.reflected_inertia);
             if damping >= 2.0 * rate {
                 self.warnings.push(Warning {

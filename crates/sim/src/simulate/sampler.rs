@@ -152,10 +152,10 @@ impl Sampler {
             sample.tau_j[i] = self.tau_j[k];
             sample.tau[i] = tau[k];
             sample.gyroscopic[i] = self.torque[k];
-            sample.friction[i] = body.friction().torque(state.qd[k]);
+            sample.friction[i] = body.friction.torque(state.qd[k]);
             sample.reference[i] = reference[i].q;
             sample.tracking_error[i] = reference[i].q - state.q[joint.q];
-            let Some(drive) = body.drive() else { continue };
+            let Some(drive) = body.drive.as_ref() else { continue };
             if let Some(elastic) = &drive.elastic {
                 (sample.theta[i], sample.thetad[i]) = (state.theta[k], state.thetad[k]);
                 let error = elastic.error.map_or(0.0, |e| e.value_and_slope(state.theta[k], drive.rotor.gear_ratio).0);

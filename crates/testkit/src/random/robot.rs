@@ -2,7 +2,7 @@
 
 use super::{Dice, Options};
 use gyroflex::model::{BodySpec, Friction, JointKind, RobotSpec};
-use gyroflex::spatial::{SpatialInertia, SymMat3, Vec3};
+use gyroflex::spatial::{SpatialInertia, SymMat3, Transform, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
 /// A random robot, and the seed it grew from.
@@ -76,7 +76,8 @@ impl RandomRobot {
             parent,
             joint,
             axis: dice.axis(),
-            placement: dice.placement(0.3),
+            // A floating root has its pose for coordinates.
+            placement: if joint == JointKind::Floating { Transform::identity() } else { dice.placement(0.3) },
             inertia: inertia(dice),
             friction,
             drive: None,
