@@ -17,22 +17,26 @@ pub fn integrate<T: Scalar>(model: &Model<T::Param>, q: &[T], v: &[T], out: &mut
     SizeError::check("q", q.len(), model.nq)?;
     SizeError::check("v", v.len(), model.nv)?;
     SizeError::check("out", out.len(), model.nq)?;
-    for body in model.bodies {
-        let (i, k) = (body.q_index(), body.v_index());
-        if body.joint == JointKind::Floating {
-            let omega = Vec3::new(v[k], v[k + 1], v[k + 2]);
-            let (turn, shift) = screw(omega, Vec3::new(v[k + 3], v[k + 4], v[k + 5]));
-            let start = [q[i + 3], q[i + 4], q[i + 5], q[i + 6]];
-            let moved = Mat3::from_quaternion(start) * shift;
-            out[i] = q[i] + moved.x;
-            out[i + 1] = q[i + 1] + moved.y;
-            out[i + 2] = q[i + 2] + moved.z;
-            out[i + 3..i + 7].copy_from_slice(&unit(product(start, turn)));
-        } else {
-            out[i] = q[i] + v[k];
-        }
+    let mut rest = (q, v, &mut *out);
+    let floating = model.bodies.first().is_some_and(|root| root.joint == JointKind::Floating);
+    if floating && let (Some((q, qs)), Some((v, vs))) = (q.split_first_chunk(), v.split_first_chunk()) {
+        let Some((out, outs)) = out.split_first_chunk_mut() else { return Ok(()) };
+        *out = moved_root(*q, *v);
+        rest = (qs, vs, outs);
+    }
+    let (q, v, out) = rest;
+    for (out, (q, v)) in out.iter_mut().zip(q.iter().zip(v)) {
+        *out = *q + *v;
     }
     Ok(())
+}
+
+/// A floating root moved along the screw of its twist.
+fn moved_root<T: Scalar>([px, py, pz, x, y, z, w]: [T; 7], [wx, wy, wz, vx, vy, vz]: [T; 6]) -> [T; 7] {
+    let (turn, shift) = screw(Vec3::new(wx, wy, wz), Vec3::new(vx, vy, vz));
+    let moved = Mat3::from_quaternion([x, y, z, w]) * shift;
+    let [x, y, z, w] = unit(product([x, y, z, w], turn));
+    [px + moved.x, py + moved.y, pz + moved.z, x, y, z, w]
 }
 
 /// `to ⊖ from`: the constant velocity that moves `from` to `to` in unit time, so that `integrate(from, v) = to`; a floating

@@ -61,6 +61,7 @@
 //! ```
 
 #![no_std]
+#![cfg_attr(feature = "nightly", feature(core_float_math))]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 

@@ -168,7 +168,13 @@ mod elementary {
     fn two_roundings<T: Scalar>(a: T, b: T, c: T) -> T {
         a * b + c
     }
-    float_scalar!(f32, single, two_roundings, libm::sqrtf, libm::atan2f, libm::tanhf, libm::expf);
+
+    #[cfg(feature = "nightly")]
+    use core::f32::math::sqrt as sqrtf;
+    #[cfg(not(feature = "nightly"))]
+    use libm::sqrtf;
+
+    float_scalar!(f32, single, two_roundings, sqrtf, libm::atan2f, libm::tanhf, libm::expf);
     float_scalar!(f64, double, two_roundings, libm::sqrt, libm::atan2, libm::tanh, libm::exp);
 }
 
