@@ -30,6 +30,7 @@ pub enum Command {
     Simulate(Simulate),
     Info(Info),
     Eval(Eval),
+    Export(Export),
     Schema(Schema),
     Completions(Completions),
 }
@@ -129,6 +130,39 @@ pub struct Eval {
     pub floating: bool,
 }
 
+/// Write a robot as source code, for controllers that can read no files.
+///
+/// The Rust module holds one model of the robot as a `static`: it goes to read-only memory (flash), costs no time at start,
+/// and gives the same results as the loaded robot, to the last bit where the elementary functions are the same.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gyroflex export --rust robots/iiwa14/robot.yaml -o src/iiwa14.rs
+  gyroflex export --rust robot.yaml --model rigid --scalar f32 > src/robot.rs
+
+In the program, with `gyroflex` among its dependencies:
+  mod iiwa14;
+  gyroflex::dynamics::rnea(&iiwa14::MODEL, ...)")]
+pub struct Export {
+    /// A robot YAML or a URDF
+    pub robot: PathBuf,
+    /// Write Rust
+    #[arg(long, required = true)]
+    pub rust: bool,
+    /// Which physics of the motors to keep [default: as the robot says]
+    #[arg(long)]
+    pub model: Option<ModelName>,
+    /// The number type of the records
+    #[arg(long, value_enum, default_value_t = Scalar::F64)]
+    pub scalar: Scalar,
+    /// The file to write [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Put the root on a floating joint
+    #[arg(long)]
+    pub floating: bool,
+}
+
 /// Print the JSON Schema of a YAML file, for editors that complete and check.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  gyroflex schema scenario > scenario.schema.json")]
@@ -168,6 +202,15 @@ impl From<ModelName> for Fidelity {
             ModelName::RigidReflected => Self::RigidReflected,
         }
     }
+}
+
+/// Number types of the core.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Scalar {
+    /// Single precision
+    F32,
+    /// Double precision
+    F64,
 }
 
 /// Files with a schema.

@@ -16,6 +16,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => commands::simulate::run(args, cli.quiet),
         Command::Info(args) => commands::info::run(args, cli.quiet),
         Command::Eval(args) => commands::eval::run(args, cli.quiet),
+        Command::Export(args) => commands::export::run(args, cli.quiet),
         Command::Schema(args) => commands::schema::run(args),
         Command::Completions(args) => commands::completions::run(args),
     };

@@ -16,6 +16,8 @@ fn a_wrong_command_line_ends_with_2() {
         &["simulate", "--duration", "nan"],
         &["simulate", "--duration", "-1"],
         &["schema", "universe"],
+        &["export", "robot.urdf"],
+        &["export", "--rust", "robot.urdf", "--scalar", "f16"],
     ] {
         let ended = gyroflex(&here, args);
         assert_eq!(ended.code, Some(2), "{args:?}: {}", ended.err);
@@ -37,7 +39,7 @@ fn help_and_version_end_with_0_on_standard_output_and_document_the_exit_codes() 
         "{}",
         help.out
     );
-    for command in ["simulate", "info", "eval", "schema", "completions"] {
+    for command in ["simulate", "info", "eval", "export", "schema", "completions"] {
         let help = gyroflex(&here, &[command, "--help"]);
         assert_eq!(help.code, Some(0));
         assert!(help.out.contains("Example"), "{command} shows no example");

@@ -6,6 +6,7 @@ pub mod dynamics;
 pub mod equilibrium;
 pub mod error;
 pub mod eval;
+pub mod export;
 pub mod info;
 pub mod load;
 pub mod loads;
