@@ -1,34 +1,42 @@
-//! Time per call of the algorithms on the 7-joint arm `iiwa14`: rigid links alone (7 coordinates) beside the complete model
-//! with elastic joints and rotors (14 coordinates), and the other two models.
+//! Time per call over robots, algorithms, models and scalars. `links` is the robot without drives: its plain rigid dynamics
+//! (7 coordinates of `iiwa14`) beside the complete model with elastic joints and rotors (14).
+//!
+//! One of them: `cargo bench -p gyroflex-benches --bench dynamics -- iiwa14/aba/complete`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use gyroflex::Scalar;
 use gyroflex::model::Fidelity;
-use gyroflex_benches::{Workload, robot, without_drives};
+use gyroflex_benches::{Algorithm, Spec, Workload, robot};
+use std::time::Duration;
 
-type Work = fn(&mut Workload, usize);
-
-fn dynamics(c: &mut Criterion) {
-    let arm = robot("iiwa14");
-    let plain = without_drives(arm.clone());
-    let mut cases = vec![("links alone".to_string(), Workload::new(&plain, Fidelity::Complete))];
-    for fidelity in Fidelity::ALL {
-        cases.push((fidelity.name().to_string(), Workload::new(&arm, fidelity)));
-    }
-    let works: [Work; 3] = [Workload::forward, Workload::inverse, Workload::mass_matrix];
-    for (name, work) in ["aba", "rnea", "crba"].into_iter().zip(works) {
-        let mut group = c.benchmark_group(format!("iiwa14/{name}"));
-        for (case, workload) in &mut cases {
+fn over_models<T: Scalar + 'static>(c: &mut Criterion, name: &str, spec: &Spec, scalar: &str) {
+    let mut models = vec![("links", Workload::<T>::new(&spec.clone().without_drives(), Fidelity::Complete))];
+    models.extend(Fidelity::ALL.map(|fidelity| (fidelity.name(), Workload::new(spec, fidelity))));
+    for algorithm in Algorithm::ALL {
+        for (model, workload) in models.iter_mut().filter(|(_, workload)| workload.takes(algorithm)) {
             let mut i = 0;
-            group.bench_function(case.as_str(), |b| {
+            c.bench_function(&format!("{name}/{}/{model}/{scalar}", algorithm.name()), |b| {
                 b.iter(|| {
-                    work(workload, i);
+                    workload.call(algorithm, i);
                     i += 1;
                 });
             });
         }
-        group.finish();
     }
 }
 
-criterion_group!(benches, dynamics);
+fn dynamics(c: &mut Criterion) {
+    for name in ["iiwa14", "puma560", "manutec_r3"] {
+        let spec = robot(name);
+        over_models::<f64>(c, name, &spec, "f64");
+        over_models::<f32>(c, name, &spec, "f32");
+    }
+}
+
+criterion_group! {
+    name = benches;
+    // 120 benches: a minute and a half in all.
+    config = Criterion::default().sample_size(20).warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_millis(400));
+    targets = dynamics
+}
 criterion_main!(benches);

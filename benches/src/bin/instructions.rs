@@ -1,25 +1,53 @@
-//! Runs one algorithm on `iiwa14` a given number of times and does nothing else, for a tool that counts instructions.
-//! Usage: `instructions CASE CALLS`, CASE one of `aba:links`, `aba:complete`, `rnea:links`, `rnea:complete`, `crba:links`, …
+//! Runs single calls between marks, for `benches/instructions`, which steps through them and counts.
+//!
+//! The first line says where [`mark`] is; then the program waits for a line on standard input. Before and after every counted
+//! call it passes the mark, and then names the case.
 
+use gyroflex::Scalar;
 use gyroflex::model::Fidelity;
-use gyroflex_benches::{Workload, robot, without_drives};
+use gyroflex_benches::{Algorithm, Shape, Spec, Workload, generated};
+use std::hint::black_box;
+use std::io::Write;
 
-fn main() {
-    let mut args = std::env::args().skip(1);
-    let case = args.next().unwrap_or_default();
-    let calls: usize = args.next().and_then(|n| n.parse().ok()).unwrap_or(0);
-    let (algorithm, model) = case.split_once(':').unwrap_or((&case, "complete"));
-    let arm = robot("iiwa14");
-    let mut workload = match Fidelity::ALL.iter().find(|f| f.name() == model) {
-        Some(fidelity) => Workload::new(&arm, *fidelity),
-        None => Workload::new(&without_drives(arm), Fidelity::Complete),
-    };
-    let work = match algorithm {
-        "aba" => Workload::forward,
-        "rnea" => Workload::inverse,
-        _ => Workload::mass_matrix,
-    };
-    for i in 0..calls {
-        work(&mut workload, i);
+/// Where counting begins and ends.
+#[inline(never)]
+fn mark() {
+    black_box(());
+}
+
+/// Counts every algorithm at the first `states` random states.
+fn cases<T: Scalar + 'static>(robot: &str, spec: &Spec, fidelity: Fidelity, scalar: &str, states: usize) {
+    let mut workload = Workload::<T>::new(spec, fidelity);
+    for algorithm in Algorithm::ALL {
+        // What is done once and for all, like asking the processor what it can, is not a call's cost.
+        workload.call(algorithm, 0);
+        for i in 0..states {
+            mark();
+            workload.call(algorithm, i);
+            mark();
+            println!("{robot} {} {} {scalar}", algorithm.name(), fidelity.name());
+        }
     }
+}
+
+fn main() -> std::io::Result<()> {
+    println!("{:p}", mark as *const ());
+    std::io::stdout().flush()?;
+    std::io::stdin().read_line(&mut String::new())?;
+    mark();
+    mark();
+    println!("nothing");
+    let arm = generated(Shape::Chain, 7);
+    // Every step costs, so that one case stands for the others in showing that the count does not depend on the state.
+    cases::<f64>("arm7", &arm, Fidelity::Complete, "f64", 12);
+    for fidelity in [Fidelity::Reduced, Fidelity::Rigid, Fidelity::RigidReflected] {
+        cases::<f64>("arm7", &arm, fidelity, "f64", 2);
+    }
+    cases::<f32>("arm7", &arm, Fidelity::Complete, "f32", 2);
+    cases::<f64>("tree14", &generated(Shape::Tree, 14), Fidelity::Complete, "f64", 2);
+    #[cfg(feature = "robots")]
+    for fidelity in Fidelity::ALL {
+        cases::<f64>("iiwa14", &gyroflex_benches::robot("iiwa14"), fidelity, "f64", 1);
+    }
+    Ok(())
 }

@@ -1,0 +1,128 @@
+// Pinocchio, header-only: every algorithm is compiled with this program's own flags.
+#include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/kinematics.hpp>
+#include <pinocchio/algorithm/rnea.hpp>
+#include <pinocchio/multibody.hpp>
+#include <pinocchio/multibody/joint.hpp>
+#include <memory>
+#include "worker.hpp"
+
+namespace pin = pinocchio;
+using Eigen::Map;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Vector = Map<const VectorXd>;
+
+constexpr double TOLERANCE = 1e-9;
+
+pin::Model model_of(const Tree& tree) {
+  pin::Model model;
+  model.gravity.linear(Vector3d(0, 0, -tree.gravity));
+  for (const Body& b : tree.bodies) {
+    pin::JointModel joint = pin::JointModelRevoluteUnaligned(b.axis[0], b.axis[1], b.axis[2]);
+    if (b.joint == "RX") joint = pin::JointModelRX();
+    if (b.joint == "RY") joint = pin::JointModelRY();
+    if (b.joint == "RZ") joint = pin::JointModelRZ();
+    if (b.joint == "floating") joint = pin::JointModelFreeFlyer();
+    const pin::SE3 pose(Matrix3d(Map<const Matrix3d>(b.rotation).transpose()), Map<const Vector3d>(b.position));
+    Matrix3d inertia;
+    const double* I = b.inertia;
+    inertia << I[0], I[1], I[3], I[1], I[2], I[4], I[3], I[4], I[5];
+    const auto index = model.addJoint(pin::JointIndex(b.parent + 1), joint, pose, "j" + std::to_string(model.njoints));
+    model.appendBodyToJoint(index, pin::Inertia(b.mass, Map<const Vector3d>(b.centre), inertia), pin::SE3::Identity());
+  }
+  return model;
+}
+
+// One robot with its data; Pinocchio wants its own vectors, so the states are copied once.
+struct Robot {
+  Tree tree;
+  pin::Model model;
+  pin::Data data;
+  std::vector<VectorXd> q, v, a, u;
+  VectorXd torques;
+
+  explicit Robot(const Tree& t) : tree(t), model(model_of(t)), data(model), torques(t.nv) {
+    for (int k = 0; k < STATES; ++k) {
+      q.emplace_back(Vector(t.q(k), t.nq));
+      v.emplace_back(Vector(t.v(k), t.nv));
+      a.emplace_back(Vector(t.a(k), t.nv));
+      u.emplace_back(Vector(t.u(k), t.nv));
+    }
+  }
+
+  void forward(int k, pin::Convention convention) {
+    const auto i = size_t(k);
+    if (tree.springs.empty()) {
+      pin::aba(model, data, q[i], v[i], u[i], convention);
+    } else {
+      tree.add_springs(q[i].data(), v[i].data(), u[i].data(), 1.0, torques.data());
+      pin::aba(model, data, q[i], v[i], torques, convention);
+    }
+    used(data.ddq);
+  }
+
+  void inverse(int k) {
+    const auto i = size_t(k);
+    pin::rnea(model, data, q[i], v[i], a[i]);
+    tree.add_springs(q[i].data(), v[i].data(), data.tau.data(), -1.0, torques.data());
+    used(torques);
+  }
+
+  void matrix(int k, pin::Convention convention) {
+    pin::crba(model, data, q[size_t(k)], convention);
+    used(data.M);
+  }
+
+  double momentum_error(int k) {
+    const VectorXd product = data.M.selfadjointView<Eigen::Upper>() * a[size_t(k)];
+    return tree.error(product.data(), tree.expected_momentum(k), false);
+  }
+
+  double pose_error(int k) const {
+    double worst = 0;
+    for (size_t b = 0; b < tree.bodies.size(); ++b) {
+      const double* want = tree.expected_poses(k) + 12 * b;
+      const Matrix3d by_rows = data.oMi[b + 1].rotation().transpose();
+      worst = std::max(worst, largest_difference(by_rows.data(), want, 9));
+      worst = std::max(worst, largest_difference(data.oMi[b + 1].translation().data(), want + 9, 3));
+    }
+    return worst;
+  }
+};
+
+int main(int argc, char** argv) {
+  Worker worker(argc, argv);
+  for (const auto& name : worker.robots) {
+    auto robot = std::make_shared<Robot>(Tree(worker.folder, name));
+    Robot* r = robot.get();
+    for (auto [label, convention] : {std::pair{"local", pin::Convention::LOCAL}, {"world", pin::Convention::WORLD}}) {
+      const auto c = convention;
+      const std::string variant = std::string(":") + label;
+      worker.add(name + "/aba" + variant, TOLERANCE, [=](int k) {
+        r->forward(k, c);
+        return r->tree.error(r->data.ddq.data(), r->tree.expected_forward(k), true);
+      }, [=](int k) { r->forward(k, c); });
+      worker.add(name + "/crba" + variant, TOLERANCE, [=](int k) {
+        r->matrix(k, c);
+        return r->momentum_error(k);
+      }, [=](int k) { r->matrix(k, c); });
+    }
+    worker.add(name + "/rnea", TOLERANCE, [=](int k) {
+      r->inverse(k);
+      return r->tree.error(r->torques.data(), r->tree.expected_inverse(k), false);
+    }, [=](int k) { r->inverse(k); });
+    worker.add(name + "/fk", TOLERANCE, [=](int k) {
+      pin::forwardKinematics(r->model, r->data, r->q[size_t(k)]);
+      return r->pose_error(k);
+    }, [=](int k) {
+      pin::forwardKinematics(r->model, r->data, r->q[size_t(k)]);
+      used(r->data.oMi);
+    });
+    static std::vector<std::shared_ptr<Robot>> alive;  // the rows point into it
+    alive.push_back(robot);
+  }
+  return worker.serve();
+}

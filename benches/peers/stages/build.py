@@ -1,0 +1,105 @@
+"""Where everything lives, what is installed, and how every program is built."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent.parent
+REPOSITORY = HERE.parent.parent
+HOME = Path(os.environ.get("GYROFLEX_PEERS") or Path.home() / ".cache/gyroflex/peers")
+PYTHON = HOME / "venv/bin/python"
+MODELS = HOME / "models"
+BIN = HOME / "bin"
+
+# Pinned, so that a table says what it measured. cmeel-* are the headers Pinocchio needs.
+PACKAGES = ["pin==4.1.0", "libpinocchio==4.1.0", "cmeel-eigen==3.4.1", "cmeel-boost==1.90.0",
+            "example-robot-data==6.0.0", "mujoco==4.0.0"]
+# Without the preprocessed lists of Boost, which are too short for Pinocchio's list of joints.
+BOOST = ["-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
+         "-DBOOST_FUSION_INVOKE_MAX_ARITY=12"]
+CXX_FLAGS = ["-std=c++17", "-O3", "-DNDEBUG"]
+ARCHITECTURES = ["native", "x86-64-v3"]
+
+
+def call(*command, **more):
+    try:
+        subprocess.run([str(word) for word in command], check=True, **more)
+    except FileNotFoundError:
+        sys.exit(f"`{command[0]}` is not installed")
+    except subprocess.CalledProcessError as error:
+        sys.exit(f"`{command[0]}` failed with code {error.returncode}, see above")
+
+
+def nice(*command, **more):
+    call("nice", "-n", "10", *command, **more)
+
+
+def install(_):
+    missing = [tool for tool in ("clang++", "cargo") if not shutil.which(tool)]
+    if missing:
+        sys.exit(f"install {' and '.join(missing)} first (Debian: apt-get install clang cargo)")
+    if not PYTHON.exists():
+        call(sys.executable, "-m", "venv", HOME / "venv")
+    call(PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *PACKAGES)
+
+
+def models(_):
+    call(PYTHON, HERE / "stages/models.py", MODELS)
+
+
+def site_packages():
+    return next((HOME / "venv/lib").glob("python3*/site-packages"), None) or sys.exit("run the stage `install` first")
+
+
+def programs():
+    """Name, and how to build it from scratch, of every program."""
+    yield "gyroflex", lambda: gyroflex(None)
+    yield "mujoco", mujoco
+    for architecture in ARCHITECTURES:
+        yield f"gyroflex-{architecture}", lambda a=architecture: gyroflex(a)
+        yield f"rust-peers-{architecture}", lambda a=architecture: rust_peers(a)
+        yield f"pinocchio-{architecture}", lambda a=architecture: pinocchio(a)
+
+
+def build(options):
+    BIN.mkdir(parents=True, exist_ok=True)
+    for name, make in programs():
+        if options.only in name:
+            print(f"building {name}", flush=True)
+            make()
+
+
+def cargo(folder, target, architecture, arguments, program, name):
+    environment = {key: value for key, value in os.environ.items() if key != "RUSTFLAGS"}
+    environment["CARGO_TARGET_DIR"] = str(HOME / target)
+    if architecture:
+        environment["RUSTFLAGS"] = f"-C target-cpu={architecture}"
+    nice("cargo", "build", "--quiet", "--release", *arguments, cwd=folder, env=environment)
+    shutil.copy2(HOME / target / "release" / program, BIN / name)
+
+
+def gyroflex(architecture):
+    """As a user of the crate gets it: the release profile, without flags or with one."""
+    suffix = f"-{architecture}" if architecture else ""
+    cargo(REPOSITORY, f"target-gyroflex{suffix}", architecture, ["-p", "gyroflex-benches", "--bin", "peer"], "peer",
+          f"gyroflex{suffix}")
+
+
+def rust_peers(architecture):
+    cargo(HERE / "rust", f"target-rust-{architecture}", architecture, ["--locked"], "gyroflex-peers",
+          f"rust-peers-{architecture}")
+
+
+def pinocchio(architecture):
+    include = site_packages() / "cmeel.prefix/include"
+    nice("clang++", *CXX_FLAGS, f"-march={architecture}", *BOOST, "-isystem", include, "-isystem", include / "eigen3",
+         HERE / "cpp/pinocchio.cpp", "-o", BIN / f"pinocchio-{architecture}")
+
+
+def mujoco():
+    folder = site_packages() / "mujoco"
+    library = next(folder.glob("libmujoco.so.*"))
+    nice("clang++", *CXX_FLAGS, "-march=native", "-isystem", folder / "include", HERE / "cpp/mujoco.cpp", "-o", BIN / "mujoco",
+         library, f"-Wl,-rpath,{folder}")

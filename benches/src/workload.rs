@@ -1,0 +1,142 @@
+//! A model, random states, and everything the algorithms write.
+
+use crate::STATES;
+use gyroflex::Scalar;
+use gyroflex::dynamics::{
+    AbaScratch, Acceleration, CrbaScratch, External, Forward, Inverse, RneaScratch, State, aba, crba, placements, rnea,
+};
+use gyroflex::model::{Body, BodySpec, Fidelity, Knot, Model, RobotSpec};
+use gyroflex::spatial::{Transform, Vec3};
+
+/// A robot's description in storage of its own.
+#[derive(Clone, Debug)]
+pub struct Spec {
+    /// As in [`RobotSpec`].
+    pub bodies: Vec<BodySpec>,
+    /// As in [`RobotSpec`].
+    pub spring_tables: Vec<[f64; 2]>,
+    /// Gravity in world axes [m/s²].
+    pub gravity: Vec3<f64>,
+}
+
+impl Spec {
+    /// The same robot without drives: its plain rigid dynamics.
+    pub fn without_drives(mut self) -> Self {
+        for body in &mut self.bodies {
+            body.drive = None;
+        }
+        self
+    }
+
+    /// Lowers it for one of the four models. The records stay for the life of the program, as an arm's do in a controller.
+    pub fn lower<T: Scalar>(&self, fidelity: Fidelity) -> Model<'static, T> {
+        let Self { bodies, spring_tables, gravity } = self;
+        let spec = RobotSpec { bodies, spring_tables, gravity: *gravity };
+        let mut records = vec![Body::empty(); bodies.len()];
+        let mut knots = vec![Knot::EMPTY; spec.knots_needed()];
+        spec.lower(fidelity, &mut records, &mut knots).unwrap_or_else(|e| panic!("{e}"));
+        let records: Vec<Body<T>> = records.iter().map(Body::cast).collect();
+        let knots: Vec<Knot<T>> = knots.iter().map(Knot::cast).collect();
+        Model::new(records.leak(), knots.leak(), gravity.map(T::from_f64))
+    }
+}
+
+/// What is called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Algorithm {
+    /// Forward dynamics.
+    Aba,
+    /// Inverse dynamics.
+    Rnea,
+    /// The inertia matrix.
+    Crba,
+    /// Poses of all links.
+    Placements,
+}
+
+impl Algorithm {
+    /// All four.
+    pub const ALL: [Self; 4] = [Self::Aba, Self::Rnea, Self::Crba, Self::Placements];
+
+    /// The function's name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Aba => "aba",
+            Self::Rnea => "rnea",
+            Self::Crba => "crba",
+            Self::Placements => "placements",
+        }
+    }
+}
+
+/// A robot in one model and scalar, ready to be called.
+#[derive(Debug)]
+pub struct Workload<T: 'static> {
+    model: Model<'static, T>,
+    states: Vec<[Vec<T>; 5]>,
+    aba: Vec<AbaScratch<T>>,
+    rnea: Vec<RneaScratch<T>>,
+    crba: Vec<CrbaScratch<T>>,
+    out: [Vec<T>; 3],
+    matrix: Vec<T>,
+    poses: Vec<Transform<T>>,
+}
+
+impl<T: Scalar + 'static> Workload<T> {
+    /// Prepares a robot for one of the four models.
+    pub fn new(spec: &Spec, fidelity: Fidelity) -> Self {
+        let model = spec.lower(fidelity);
+        let (n, nq, nv) = (model.bodies().len(), model.nq(), model.nv());
+        let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut uniform = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        let states = (0..STATES)
+            .map(|_| {
+                let q: Vec<f64> = (0..nq).map(|_| 3.0 * uniform()).collect();
+                let theta = q.iter().take(nv).map(|q| q + 1e-3 * uniform()).collect();
+                let mut vector = |scale: f64| (0..nv).map(|_| scale * uniform()).collect::<Vec<_>>();
+                let (qd, thetad, tau) = (vector(2.0), vector(2.0), vector(20.0));
+                [q, qd, theta, thetad, tau].map(|x| x.into_iter().map(T::from_f64).collect())
+            })
+            .collect();
+        let zeros = || vec![T::zero(); nv];
+        Self {
+            model,
+            states,
+            aba: vec![AbaScratch::new(); n],
+            rnea: vec![RneaScratch::new(); n],
+            crba: vec![CrbaScratch::new(); n],
+            out: [zeros(), zeros(), zeros()],
+            matrix: vec![T::zero(); nv * nv],
+            poses: vec![Transform::identity(); n],
+        }
+    }
+
+    /// Whether the algorithm is the one for this model: with rigidly geared rotors on far links, forward dynamics is not.
+    pub fn takes(&self, algorithm: Algorithm) -> bool {
+        algorithm != Algorithm::Aba || !self.model.has_remote_rigid_rotor()
+    }
+
+    /// One call at state `i`.
+    #[inline]
+    pub fn call(&mut self, algorithm: Algorithm, i: usize) {
+        let [q, qd, theta, thetad, tau] = &self.states[i % STATES];
+        let (model, state) = (&self.model, State { q, qd, theta, thetad });
+        let [a, b, c] = &mut self.out;
+        let done = match algorithm {
+            Algorithm::Aba => {
+                let out = Forward { qdd: a, thetadd: b, tau_j: c };
+                aba(model, state, tau, External::none(), &mut self.aba, out)
+            }
+            Algorithm::Rnea => {
+                let accel = Acceleration { qdd: tau, thetadd: tau };
+                rnea(model, state, accel, External::none(), &mut self.rnea, Inverse { tau_j: a, tau: b })
+            }
+            Algorithm::Crba => crba(model, q, &mut self.crba, &mut self.matrix),
+            Algorithm::Placements => placements(model, q, &mut self.poses),
+        };
+        done.unwrap_or_else(|e| panic!("{e}"));
+    }
+}
