@@ -9,7 +9,7 @@ use gyroflex::model::Fidelity;
 use gyroflex_benches::{Algorithm, Spec, Workload, robot};
 use std::time::Duration;
 
-fn over_models<T: Scalar + 'static>(c: &mut Criterion, name: &str, spec: &Spec, scalar: &str) {
+fn over_models<T: Scalar<Param = T> + 'static>(c: &mut Criterion, name: &str, spec: &Spec, scalar: &str) {
     let mut models = vec![("links", Workload::<T>::new(&spec.clone().without_drives(), Fidelity::Complete))];
     models.extend(Fidelity::ALL.map(|fidelity| (fidelity.name(), Workload::new(spec, fidelity))));
     for algorithm in Algorithm::ALL {

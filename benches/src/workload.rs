@@ -82,7 +82,7 @@ pub struct Workload<T: 'static> {
     poses: Vec<Transform<T>>,
 }
 
-impl<T: Scalar + 'static> Workload<T> {
+impl<T: Scalar<Param = T> + 'static> Workload<T> {
     /// Prepares a robot for one of the four models.
     pub fn new(spec: &Spec, fidelity: Fidelity) -> Self {
         let model = spec.lower(fidelity);

@@ -16,7 +16,7 @@ fn mark() {
 }
 
 /// Counts every algorithm at the first `states` random states.
-fn cases<T: Scalar + 'static>(robot: &str, spec: &Spec, fidelity: Fidelity, scalar: &str, states: usize) {
+fn cases<T: Scalar<Param = T> + 'static>(robot: &str, spec: &Spec, fidelity: Fidelity, scalar: &str, states: usize) {
     let mut workload = Workload::<T>::new(spec, fidelity);
     for algorithm in Algorithm::ALL {
         // What is done once and for all, like asking the processor what it can, is not a call's cost.
