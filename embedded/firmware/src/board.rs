@@ -9,9 +9,10 @@ use cortex_m_semihosting::{debug, hprintln};
 
 /// The counter wraps at 24 bits.
 const RELOAD: u32 = 0x00ff_ffff;
-/// The boards' clock: 25 MHz. QEMU with `-icount shift=6` lets an instruction take 64 ns of it.
+/// The boards' clock: 25 MHz. QEMU with `-icount shift=8` lets an instruction take 256 ns of it: so many ticks that a
+/// difference of two readings, each cut off to a whole tick, rounds to the exact count.
 const NS_PER_TICK: u32 = 40;
-const NS_PER_INSTRUCTION: u32 = 64;
+const NS_PER_INSTRUCTION: u32 = 256;
 
 /// The core's own timer, counting down.
 pub struct Board(());
@@ -27,7 +28,7 @@ impl Board {
         Some(Self(()))
     }
 
-    /// Instructions of one call of `f`, reading the timer included. At most ten million.
+    /// Instructions of one call of `f`, reading the timer included. At most two million.
     #[inline(always)]
     pub fn instructions(&self, f: impl FnOnce()) -> u32 {
         let start = now();

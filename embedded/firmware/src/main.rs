@@ -20,10 +20,10 @@ fn main() -> ! {
     let Some(board) = Board::take() else { board::end(false) };
     hprintln!("seed {:#x}", SEED);
     let mut verdict = Verdict::new();
-    report::laws(SEED, &mut verdict);
-    report::counts(&board, SEED, &mut verdict);
     report::motion(&board, &mut verdict);
-    hprintln!("stack {} bytes", board::stack_used());
+    hprintln!("loop stack {} bytes, the simulated arm included", board::stack_used());
+    report::counts(&board, SEED, &mut verdict);
+    report::laws(SEED, &mut verdict);
     hprintln!("{}", if verdict.held() { "held" } else { "FAILED" });
     board::end(verdict.held())
 }
