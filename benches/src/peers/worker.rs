@@ -10,13 +10,16 @@ use std::time::{Duration, Instant};
 
 const BATCH: Duration = Duration::from_millis(3);
 
+/// Makes a number of calls, each at the next state.
+type Calls = Box<dyn FnMut(usize)>;
+
 /// The rows of one program.
 pub struct Worker {
     /// Where the robots are.
     pub folder: PathBuf,
     /// Names of the robots asked for.
     pub robots: Vec<String>,
-    rows: Vec<(String, Box<dyn FnMut(usize)>)>,
+    rows: Vec<(String, Calls)>,
     counted: Option<(String, usize)>,
 }
 

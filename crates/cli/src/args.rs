@@ -1,5 +1,9 @@
 //! What the command line may say.
 
+mod bench;
+
+pub use bench::Bench;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use gyroflex_sim::Fidelity;
@@ -30,6 +34,7 @@ pub enum Command {
     Simulate(Simulate),
     Info(Info),
     Eval(Eval),
+    Bench(Bench),
     Export(Export),
     Schema(Schema),
     Completions(Completions),

@@ -4,6 +4,7 @@ mod args;
 mod builtin;
 mod commands;
 mod failure;
+mod progress;
 mod report;
 
 use args::{Cli, Command};
@@ -16,6 +17,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => commands::simulate::run(args, cli.quiet),
         Command::Info(args) => commands::info::run(args, cli.quiet),
         Command::Eval(args) => commands::eval::run(args, cli.quiet),
+        Command::Bench(args) => commands::bench::run(args, cli.quiet),
         Command::Export(args) => commands::export::run(args, cli.quiet),
         Command::Schema(args) => commands::schema::run(args),
         Command::Completions(args) => commands::completions::run(args),

@@ -15,6 +15,7 @@ fn a_wrong_command_line_ends_with_2() {
         &["simulate", "--model", "spong"],
         &["simulate", "--duration", "nan"],
         &["simulate", "--duration", "-1"],
+        &["bench", "robot.urdf", "--calls", "0"],
         &["schema", "universe"],
         &["export", "robot.urdf"],
         &["export", "--rust", "robot.urdf", "--scalar", "f16"],
@@ -39,7 +40,7 @@ fn help_and_version_end_with_0_on_standard_output_and_document_the_exit_codes() 
         "{}",
         help.out
     );
-    for command in ["simulate", "info", "eval", "export", "schema", "completions"] {
+    for command in ["simulate", "info", "eval", "bench", "export", "schema", "completions"] {
         let help = gyroflex(&here, &[command, "--help"]);
         assert_eq!(help.code, Some(0));
         assert!(help.out.contains("Example"), "{command} shows no example");

@@ -3,16 +3,15 @@
 use crate::args::Simulate;
 use crate::builtin;
 use crate::failure::{Failure, print, say, warn};
+use crate::progress::{STEPS, progress_bar, stop_flag};
 use crate::report::Report;
 use gyroflex_sim::error::{Error, ErrorKind};
 use gyroflex_sim::load::{self, Disk, FileSource, LoadOptions};
 use gyroflex_sim::record::{CsvRecorder, McapRecorder, TeeRecorder};
 use gyroflex_sim::{ScenarioFile, Simulation};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 pub fn run(args: &Simulate, quiet: bool) -> Result<(), Failure> {
     let (mut simulation, duration) = prepare(args, quiet)?;
@@ -20,7 +19,7 @@ pub fn run(args: &Simulate, quiet: bool) -> Result<(), Failure> {
     for written in std::iter::once(&log).chain(&args.csv) {
         spare_the_input(written, args)?;
     }
-    let stop = stop_flag(quiet);
+    let stop = stop_flag(quiet, "complete the log");
     let info = simulation.run_info();
     let mut recorder = TeeRecorder::new().with(McapRecorder::create(&log, info.clone())?);
     if let Some(csv) = &args.csv {
@@ -28,9 +27,9 @@ pub fn run(args: &Simulate, quiet: bool) -> Result<(), Failure> {
     }
 
     let known = simulation.warnings().len();
-    let bar = progress_bar(quiet);
+    let bar = progress_bar(quiet, "simulating");
     let result = simulation.run(&mut recorder, &mut |t| {
-        bar.set_position((t / duration * STEPS_OF_BAR as f64) as u64);
+        bar.set_position((t / duration * STEPS as f64) as u64);
         if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     bar.finish_and_clear();
@@ -115,25 +114,4 @@ fn spare_the_input(written: &Path, args: &Simulate) -> Result<(), Error> {
         problem: problem.to_owned(),
         remedy: "name another file".to_owned(),
     })
-}
-
-/// Becomes true on Ctrl-C, or when the system asks the program to end.
-fn stop_flag(quiet: bool) -> Arc<AtomicBool> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let raised = Arc::clone(&flag);
-    let installed = ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed));
-    if let (Err(e), false) = (installed, quiet) {
-        say(&format!("warning: Ctrl-C will not complete the log: {e}"));
-    }
-    flag
-}
-
-const STEPS_OF_BAR: u64 = 1000;
-
-/// A bar where somebody can see it.
-fn progress_bar(quiet: bool) -> ProgressBar {
-    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(Some(STEPS_OF_BAR), target);
-    let style = ProgressStyle::with_template("simulating {bar:40} {percent:>3} %  {eta} left");
-    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
