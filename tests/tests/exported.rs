@@ -89,7 +89,7 @@ fn compiled_robots_equal_the_loaded_ones_bit_for_bit() {
         }
     }
     let probe = include_str!("exported/probe.rs");
-    let main = format!("#![deny(warnings)]\n#![allow(dead_code)]\n{modules}\n{probe}\nfn main() {{\n{calls}}}\n");
+    let main = format!("#![deny(warnings)]\n{modules}\n{probe}\nfn main() {{\n{calls}}}\n");
     std::fs::write(source.join("main.rs"), main).expect("the folder can be written");
     let core = project("crates/core").canonicalize().expect("the core is there");
     let manifest = format!(
