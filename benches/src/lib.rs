@@ -1,12 +1,14 @@
 //! Robots, states and calls shared by the benches and the instruction counts.
 
 mod generated;
+mod lanes;
 pub mod peers;
 #[cfg(feature = "robots")]
 mod robots;
 mod workload;
 
 pub use generated::{Shape, generated};
+pub use lanes::Lane;
 pub use peers::STATES;
 #[cfg(feature = "robots")]
 pub use robots::{load, robot};

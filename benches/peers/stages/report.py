@@ -54,7 +54,7 @@ def comparison(entries):
     for algorithm, words in ALGORITHMS.items():
         for robot in ROBOTS:
             group = [e for e in entries if family(e["row"]) == f"{robot}/{algorithm}"]
-            ours = {e["program"]: e for e in group if e["program"] in BUILDS}
+            ours = {e["program"]: e for e in group if e["program"] in BUILDS and ":" not in e["row"]}
             if not ours:
                 continue
             cells = [f"{words} · {title(robot)}", *(ns(min(ours[build]["fastest"])) for build in BUILDS)]
@@ -88,6 +88,19 @@ def details(entries, algorithm, counts):
                          + (f" · {count:,}" if count else ""))
         rows.append(cells)
     return table([ALGORITHMS[algorithm], *map(title, robots)], rows)
+
+
+def per_link(entries):
+    """Cost per link of chains and binary trees with rotors, as their number grows."""
+    sizes = sorted({int(e["row"].partition("/")[0].removeprefix("chain")) for e in entries if e["row"].startswith("chain")})
+    rows = []
+    for shape in ("chain", "tree"):
+        for algorithm in ("aba", "rnea"):
+            for program, words in BUILDS.items():
+                found = {e["row"]: e for e in entries if e["program"] == program}
+                costs = [min(found[f"{shape}{n}/{algorithm}"]["fastest"]) / n for n in sizes]
+                rows.append([f"{ALGORITHMS[algorithm]} · {shape}, {words}", *map(ns, costs)])
+    return table(["ns per link", *(f"{n} links" for n in sizes)], rows)
 
 
 def machine():
@@ -132,6 +145,8 @@ def report(_):
              "the median over the rounds; each peer with the fastest of its builds and ways.", summary,
              "Every build and way: fastest batch (median batch)" + (" · instructions per call" if counts else "") + "."]
     parts += [details(entries, algorithm, counts) for algorithm in ALGORITHMS]
+    parts += ["Chains and binary trees of any size, every joint with a rotor behind an elastic transmission, gyroflex alone:",
+              per_link(entries)]
     text = DOCUMENT.read_text()
     before, _, rest = text.partition(BEGIN)
     _, mark, after = rest.partition(END)

@@ -80,9 +80,8 @@ pub fn add(worker: &mut Worker, tree: Tree) {
     worker.add(row("aba"), TOLERANCE, &robot, Robot::forward, |r, k| {
         r.tree.acceleration_error(&r.out, r.tree.expected(k)[0])
     });
-    worker.add(row("rnea"), TOLERANCE, &robot, Robot::inverse, |r, k| {
-        r.tree.torque_error(&r.out, r.tree.expected(k)[1])
-    });
+    worker
+        .add(row("rnea"), TOLERANCE, &robot, Robot::inverse, |r, k| r.tree.torque_error(&r.out, r.tree.expected(k)[1]));
     worker.add(row("crba"), TOLERANCE, &robot, Robot::mass_matrix, Robot::momentum_error);
     worker.add(row("fk"), TOLERANCE, &robot, Robot::kinematics, Robot::pose_error);
 }

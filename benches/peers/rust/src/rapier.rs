@@ -81,12 +81,18 @@ fn build(tree: Tree) -> Robot {
 pub fn add(worker: &mut Worker, tree: Tree) {
     let row = format!("{}/aba:rapier-step", tree.name);
     let robot = Rc::new(RefCell::new(build(tree)));
-    worker.add(row, TOLERANCE, &robot, |r, _| r.step(), |r, k| {
-        if k > 0 {
-            return 0.0;
-        }
-        let after = r.velocity();
-        let rates: Vec<f64> = after.iter().zip(&r.before).map(|(after, before)| (after - before) / STEP).collect();
-        r.tree.acceleration_error(&rates, &r.tree.still)
-    });
+    worker.add(
+        row,
+        TOLERANCE,
+        &robot,
+        |r, _| r.step(),
+        |r, k| {
+            if k > 0 {
+                return 0.0;
+            }
+            let after = r.velocity();
+            let rates: Vec<f64> = after.iter().zip(&r.before).map(|(after, before)| (after - before) / STEP).collect();
+            r.tree.acceleration_error(&rates, &r.tree.still)
+        },
+    );
 }

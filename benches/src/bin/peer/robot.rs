@@ -1,4 +1,4 @@
-//! gyroflex's program in the comparison with other libraries; `peers/README.md` says how it is run.
+//! A robot of the comparison, computed by gyroflex: one state at a time, or several side by side.
 
 use gyroflex::dynamics::{
     AbaScratch, Acceleration, CrbaScratch, External, Forward, Inverse, RneaScratch, State, aba, coupling, crba,
@@ -6,46 +6,41 @@ use gyroflex::dynamics::{
 };
 use gyroflex::model::{Fidelity, Model};
 use gyroflex::spatial::Transform;
-use gyroflex_benches::peers::{Tree, Worker, error};
-use gyroflex_benches::{STATES, load};
-use std::cell::RefCell;
+use gyroflex_benches::peers::{Tree, error};
+use gyroflex_benches::{Lane, STATES, load};
 use std::hint::black_box;
 use std::path::Path;
-use std::rc::Rc;
 
-/// The largest error the other libraries' light fast rotors leave room to see, in multiples of the largest number.
-const TOLERANCE: f64 = 1e-10;
-
-/// A state in our coordinates: motors reflected, twists with the angular part first.
-struct Point {
-    q: Vec<f64>,
-    qd: Vec<f64>,
-    theta: Vec<f64>,
-    thetad: Vec<f64>,
-    tau: Vec<f64>,
-    qdd: Vec<f64>,
-    thetadd: Vec<f64>,
+/// As many states as a number holds, in our coordinates: motors reflected, twists with the angular part first.
+struct Point<T> {
+    q: Vec<T>,
+    qd: Vec<T>,
+    theta: Vec<T>,
+    thetad: Vec<T>,
+    tau: Vec<T>,
+    qdd: Vec<T>,
+    thetadd: Vec<T>,
 }
 
-struct Robot {
+pub struct Robot<T: Lane> {
     tree: Tree,
-    model: Model<'static, f64>,
-    aba: Vec<AbaScratch<f64>>,
-    rnea: Vec<RneaScratch<f64>>,
-    crba: Vec<CrbaScratch<f64>>,
-    points: Vec<Point>,
-    out: [Vec<f64>; 3],
-    matrices: [Vec<f64>; 3],
-    poses: Vec<Transform<f64>>,
+    model: Model<'static, T::Param>,
+    aba: Vec<AbaScratch<T>>,
+    rnea: Vec<RneaScratch<T>>,
+    crba: Vec<CrbaScratch<T>>,
+    points: Vec<Point<T>>,
+    out: [Vec<T>; 3],
+    matrices: [Vec<T>; 3],
+    poses: Vec<Transform<T>>,
     /// Indices of our coordinates in the tree's velocities: of the links, and of their rotors where they have one.
     links: Vec<usize>,
     rotors: Vec<Option<usize>>,
 }
 
-impl Robot {
-    fn load(folder: &Path, name: &str) -> Self {
+impl<T: Lane> Robot<T> {
+    pub fn load(folder: &Path, name: &str) -> Self {
         let tree = Tree::read(folder, name);
-        let model: Model<f64> = load(&folder.join(format!("{name}.yaml"))).lower(Fidelity::Complete);
+        let model: Model<T::Param> = load(&folder.join(format!("{name}.yaml"))).lower(Fidelity::Complete);
         let (n, nv) = (model.bodies().len(), model.nv());
         // The tree's twists have the linear part first.
         let mut links: Vec<usize> = if tree.floating() { vec![3, 4, 5, 0, 1, 2] } else { Vec::new() };
@@ -57,8 +52,8 @@ impl Robot {
         let base = nv - tree.springs.len();
         let rotors = (0..nv).map(|k| Some(tree.springs.get(k.checked_sub(base)?)?.rotor_v)).collect();
         let mut robot = Self {
-            out: std::array::from_fn(|_| vec![0.0; nv]),
-            matrices: [vec![0.0; nv * nv], vec![0.0; nv * nv], vec![0.0; nv]],
+            out: std::array::from_fn(|_| vec![T::zero(); nv]),
+            matrices: [vec![T::zero(); nv * nv], vec![T::zero(); nv * nv], vec![T::zero(); nv]],
             poses: vec![Transform::identity(); n],
             aba: vec![AbaScratch::new(); n],
             rnea: vec![RneaScratch::new(); n],
@@ -69,11 +64,33 @@ impl Robot {
             links,
             rotors,
         };
-        robot.points = (0..STATES).map(|k| robot.point(k)).collect();
+        robot.points = (0..STATES / T::WIDTH).map(|k| robot.points_from(k * T::WIDTH)).collect();
         robot
     }
 
-    fn point(&self, k: usize) -> Point {
+    /// Whether its joints have no drives.
+    pub fn is_rigid(&self) -> bool {
+        self.tree.springs.is_empty()
+    }
+
+    /// The states from `first` on, side by side.
+    fn points_from(&self, first: usize) -> Point<T> {
+        let points: Vec<Point<f64>> = (first..first + T::WIDTH).map(|k| self.point(k)).collect();
+        let gather = |part: fn(&Point<f64>) -> &Vec<f64>| {
+            (0..part(&points[0]).len()).map(|i| T::gather(|lane| part(&points[lane])[i])).collect()
+        };
+        Point {
+            q: gather(|p| &p.q),
+            qd: gather(|p| &p.qd),
+            theta: gather(|p| &p.theta),
+            thetad: gather(|p| &p.thetad),
+            tau: gather(|p| &p.tau),
+            qdd: gather(|p| &p.qdd),
+            thetadd: gather(|p| &p.thetadd),
+        }
+    }
+
+    fn point(&self, k: usize) -> Point<f64> {
         let [q, v, a, u] = self.tree.state(k);
         let lead = self.tree.nq - self.tree.nv;
         let of_links = |x: &[f64]| self.links.iter().map(|&i| x[i]).collect::<Vec<_>>();
@@ -106,8 +123,17 @@ impl Robot {
         all
     }
 
-    fn forward(&mut self, k: usize) {
-        let Point { q, qd, theta, thetad, tau, .. } = &self.points[k];
+    /// Numbers of state `k` among those computed last.
+    fn of_state(&self, k: usize, numbers: &[T]) -> Vec<f64> {
+        numbers.iter().map(|x| x.lane(k % T::WIDTH)).collect()
+    }
+
+    /// At state `k` with its neighbours; nothing to do at those.
+    pub fn forward(&mut self, k: usize) {
+        if !k.is_multiple_of(T::WIDTH) {
+            return;
+        }
+        let Point { q, qd, theta, thetad, tau, .. } = &self.points[k / T::WIDTH];
         let [qdd, thetadd, tau_j] = &mut self.out;
         let state = State { q, qd, theta, thetad };
         let out = Forward { qdd, thetadd, tau_j };
@@ -115,29 +141,36 @@ impl Robot {
         black_box((&self.out, done.is_ok()));
     }
 
-    fn forward_error(&mut self, k: usize) -> f64 {
-        self.tree.acceleration_error(&self.tree_order(&self.out[0], &self.out[1], true), self.tree.expected(k)[0])
+    pub fn forward_error(&mut self, k: usize) -> f64 {
+        let [qdd, thetadd, _] = self.out.each_ref().map(|x| self.of_state(k, x));
+        self.tree.acceleration_error(&self.tree_order(&qdd, &thetadd, true), self.tree.expected(k)[0])
     }
 
-    fn inverse(&mut self, k: usize) {
-        let Point { q, qd, theta, thetad, qdd, thetadd, .. } = &self.points[k];
+    /// Like [`Robot::forward`].
+    pub fn inverse(&mut self, k: usize) {
+        if !k.is_multiple_of(T::WIDTH) {
+            return;
+        }
+        let Point { q, qd, theta, thetad, qdd, thetadd, .. } = &self.points[k / T::WIDTH];
         let [tau_j, tau, _] = &mut self.out;
         let (state, accel) = (State { q, qd, theta, thetad }, Acceleration { qdd, thetadd });
         let done = rnea(&self.model, state, accel, External::none(), &mut self.rnea, Inverse { tau_j, tau });
         black_box((&self.out, done.is_ok()));
     }
 
-    fn inverse_error(&mut self, k: usize) -> f64 {
+    pub fn inverse_error(&mut self, k: usize) -> f64 {
         let [q, v, ..] = self.tree.state(k);
-        let [tau_j, tau, _] = &self.out;
-        let on_rotors: Vec<f64> = tau.iter().zip(tau_j).map(|(motor, joint)| motor - joint).collect();
-        let needed = self.tree_order(tau_j, &on_rotors, false);
+        let [tau_j, tau, _] = self.out.each_ref().map(|x| self.of_state(k, x));
+        let on_rotors: Vec<f64> = tau.iter().zip(&tau_j).map(|(motor, joint)| motor - joint).collect();
+        let needed = self.tree_order(&tau_j, &on_rotors, false);
         let mut torques = needed.clone();
         self.tree.add_springs(q, v, &needed, -1.0, &mut torques);
         self.tree.torque_error(&torques, self.tree.expected(k)[1])
     }
+}
 
-    fn matrix(&mut self, k: usize) {
+impl Robot<f64> {
+    pub fn matrix(&mut self, k: usize) {
         let (q, [m, s, b]) = (&self.points[k].q, &mut self.matrices);
         let mut done = crba(&self.model, q, &mut self.crba, m).is_ok();
         if !self.tree.springs.is_empty() {
@@ -146,7 +179,7 @@ impl Robot {
         black_box((&self.matrices, done));
     }
 
-    fn matrix_error(&mut self, k: usize) -> f64 {
+    pub fn matrix_error(&mut self, k: usize) -> f64 {
         let ([m, s, b], Point { qdd, thetadd, .. }) = (&self.matrices, &self.points[k]);
         let nv = qdd.len();
         let sum = |f: &dyn Fn(usize) -> f64| (0..nv).map(f).sum::<f64>();
@@ -155,12 +188,12 @@ impl Robot {
         self.tree.torque_error(&self.tree_order(&links, &rotors, false), self.tree.expected(k)[2])
     }
 
-    fn poses(&mut self, k: usize) {
+    pub fn poses(&mut self, k: usize) {
         let done = placements(&self.model, &self.points[k].q, &mut self.poses);
         black_box((&self.poses, done.is_ok()));
     }
 
-    fn pose_error(&mut self, k: usize) -> f64 {
+    pub fn pose_error(&mut self, k: usize) -> f64 {
         let numbers = |x: &Transform<f64>| {
             let (r, p) = (x.rotation(), x.pos);
             let row = |i: usize| r.rows[i].to_array();
@@ -169,19 +202,4 @@ impl Robot {
         let got: Vec<f64> = self.poses.iter().flat_map(numbers).collect();
         error(got.into_iter(), self.tree.expected(k)[3].iter().copied())
     }
-}
-
-fn main() {
-    let mut worker = Worker::from_args();
-    for name in worker.robots.clone() {
-        let robot = Rc::new(RefCell::new(Robot::load(&worker.folder, &name)));
-        worker.add(format!("{name}/aba"), TOLERANCE, &robot, Robot::forward, Robot::forward_error);
-        worker.add(format!("{name}/rnea"), TOLERANCE, &robot, Robot::inverse, Robot::inverse_error);
-        worker.add(format!("{name}/crba"), TOLERANCE, &robot, Robot::matrix, Robot::matrix_error);
-        // The pose of a rotor is that of its mount, turned by its angle: nothing to compute.
-        if robot.borrow().tree.springs.is_empty() {
-            worker.add(format!("{name}/fk"), TOLERANCE, &robot, Robot::poses, Robot::pose_error);
-        }
-    }
-    worker.serve();
 }
