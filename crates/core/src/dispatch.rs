@@ -40,9 +40,10 @@ pub trait Kernel<T: Scalar> {
 mod x86_64 {
     use super::{Fused, Kernel};
     use crate::scalar::Fusible;
+    use core::marker::PhantomData;
     use pulp::{NullaryFnOnce, Simd, x86};
 
-    struct InFused<K, T>(K, core::marker::PhantomData<T>);
+    struct InFused<K, T>(K, PhantomData<T>);
 
     impl<T: Fusible, K: Kernel<T>> NullaryFnOnce for InFused<K, T> {
         type Output = K::Output;
@@ -52,12 +53,15 @@ mod x86_64 {
         }
     }
 
-    /// With AVX2 and FMA where the processor has them.
+    /// With AVX-512, or with AVX2 and FMA, where the processor has them.
     #[inline(always)]
     pub fn on_best_instructions<T: Fusible, K: Kernel<T>>(kernel: K) -> K::Output {
-        match x86::V3::try_new() {
-            Some(v3) => Simd::vectorize(v3, InFused(kernel, core::marker::PhantomData)),
-            None => kernel.run::<T>(),
+        if let Some(v4) = x86::V4::try_new() {
+            Simd::vectorize(v4, InFused(kernel, PhantomData))
+        } else if let Some(v3) = x86::V3::try_new() {
+            Simd::vectorize(v3, InFused(kernel, PhantomData))
+        } else {
+            kernel.run::<T>()
         }
     }
 }
@@ -114,7 +118,16 @@ impl<T: Fusible> Scalar for Fused<T> {
     }
     #[inline(always)]
     fn sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES] {
-        T::fused_sin_cos_each(angles.map(|x| x.0)).map(|(s, c)| (Self(s), Self(c)))
+        let mut plain = [T::zero(); ANGLES];
+        for i in 0..ANGLES {
+            plain[i] = angles[i].0;
+        }
+        let plain = T::fused_sin_cos_each(plain);
+        let mut turns = [(Self::zero(), Self::zero()); ANGLES];
+        for i in 0..ANGLES {
+            turns[i] = (Self(plain[i].0), Self(plain[i].1));
+        }
+        turns
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {

@@ -45,7 +45,7 @@
 //! let mut bodies = [Body::empty(); 1];
 //! let model = robot.lower(Fidelity::Complete, &mut bodies, &mut [])?;
 //!
-//! let (mut qdd, mut thetadd, mut tau_j) = ([0.0], [0.0], [0.0]);
+//! let (mut qdd, mut thetadd, mut tau_j) = ([0.0_f64], [0.0], [0.0]);
 //! aba(
 //!     &model,
 //!     State { q: &[0.0], qd: &[0.0], theta: &[0.0], thetad: &[0.0] },
@@ -71,9 +71,11 @@ extern crate std;
 pub mod dispatch;
 pub mod dynamics;
 pub mod integrate;
+mod lanes;
 pub mod model;
 pub mod scalar;
 pub mod spatial;
 mod trig;
 
+pub use lanes::Lanes;
 pub use scalar::Scalar;

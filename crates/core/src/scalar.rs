@@ -44,7 +44,11 @@ pub trait Scalar:
     /// Sines and cosines of several angles [rad], which many processors compute side by side.
     #[inline(always)]
     fn sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES] {
-        angles.map(Self::sin_cos)
+        let mut turns = [(Self::zero(), Self::zero()); ANGLES];
+        for i in 0..ANGLES {
+            turns[i] = angles[i].sin_cos();
+        }
+        turns
     }
     /// Angle [rad] of the point with ordinate `self` and abscissa `x`, in `(−π, π]`.
     fn atan2(self, x: Self) -> Self;

@@ -4,28 +4,40 @@
 //! geared rotors fully in it; [`coupling`] gives `S`, whose column `j` is `N_j J_j n_jᵀ` times the angular Jacobian of the
 //! body that carries rotor `j`; [`reflected_inertia`] gives the diagonal of `B`.
 //!
+//! Everything is taken to the axes and the origin of the base, the world or a floating root: there composite inertias are
+//! sums, and an entry of the matrix is one scalar product of a motion and a force.
+//!
 //! Cost O(n·depth). No allocation, no panic, no branch on values.
 
 use super::check_scratch;
-use super::tree::{Support, Tree, turns};
+use super::tree::{Tree, turns};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
-use crate::model::{Drive, JointKind, Model, SizeError};
-use crate::spatial::{Force, Motion, SpatialInertia, SymMat3, Turn, Vec3};
+use crate::model::{Body, Drive, JointKind, Model, SizeError};
+use crate::spatial::{Force, Motion, SpatialInertia, SymMat3, Transform, Turn, Vec3};
 
 /// What the algorithm keeps for one body during a call.
 #[derive(Clone, Copy, Debug)]
 pub struct CrbaScratch<T> {
     /// Sine and cosine of the joint's angle.
     theta: Turn<T>,
-    /// `Iᶜ`.
+    /// From the base to the body.
+    pose: Transform<T>,
+    /// `S`, at the base.
+    axis: Motion<T>,
+    /// `Iᶜ`, at the base.
     composite: SpatialInertia<T>,
 }
 
 impl<T: Scalar> CrbaScratch<T> {
     /// Scratch with any content.
     pub fn new() -> Self {
-        Self { theta: Turn::none(), composite: SpatialInertia::zero() }
+        Self {
+            theta: Turn::none(),
+            pose: Transform::identity(),
+            axis: Motion::zero(),
+            composite: SpatialInertia::zero(),
+        }
     }
 }
 
@@ -48,11 +60,8 @@ pub fn crba<T: Scalar>(
     scratch: &mut [CrbaScratch<T>],
     m: &mut [T],
 ) -> Result<(), SizeError> {
-    SizeError::check("q", q.len(), model.nq)?;
-    check_scratch(model, scratch)?;
     SizeError::check("m", m.len(), model.nv * model.nv)?;
-    T::dispatch(Crba { model, q, scratch, m });
-    Ok(())
+    T::dispatch(Crba { model, q, scratch, m })
 }
 
 struct Crba<'a, 'm, T: Scalar> {
@@ -63,42 +72,78 @@ struct Crba<'a, 'm, T: Scalar> {
 }
 
 impl<T: Scalar> Kernel<T> for Crba<'_, '_, T> {
-    type Output = ();
+    type Output = Result<(), SizeError>;
 
     #[inline(always)]
-    fn run<F: Over<T>>(self) {
+    fn run<F: Over<T>>(self) -> Result<(), SizeError> {
+        if self.model.revolute { self.passes::<F, true>() } else { self.passes::<F, false>() }
+    }
+}
+
+impl<T: Scalar> Crba<'_, '_, T> {
+    /// `REVOLUTE` says that all joints are.
+    #[inline(always)]
+    fn passes<F: Over<T>, const REVOLUTE: bool>(self) -> Result<(), SizeError> {
         let Self { model, q, scratch, m } = self;
         let (tree, nv) = (Tree::of(model), model.nv);
-        let Some((_, scratch)) = tree.split_bodies_mut(scratch) else { return };
+        let (_, scratch) = tree.bodies_mut("scratch", scratch)?;
         let (joints, n) = (tree.joints, tree.joints.len());
-        let Some(q) = tree.positions(q) else { return };
+        let kind = |body: &Body<T::Param>| if REVOLUTE { JointKind::Revolute } else { body.joint };
+        let q = tree.positions(q)?;
         let lead = nv - n;
         m.fill(T::zero());
 
-        // Pass 1: each body's own inertia with the elastic rotors it carries put back in.
         turns::<T, F, _>(joints, q, scratch, |s, theta| s.theta = theta);
         let mut base = tree.root.map_or(SpatialInertia::zero(), |root| root.inertia.map(F::from_param));
+
+        // Pass 1, base to tips: X, S and I at the base; elastic rotors, which the inertias lack, are put back in.
+        let pose_at = |b: Option<u16>, scratch: &[CrbaScratch<T>]| {
+            tree.joint(b).and_then(|b| scratch.get(b)).map_or(Transform::identity(), |s| s.pose.map(F::load))
+        };
+        let mut previous = Transform::identity();
         for i in 0..n {
-            scratch[i].composite = joints[i].inertia.map(F::from_param).map(F::store);
-            if let Some(Drive { rotor, elastic: Some(_) }) = &joints[i].drive
+            let body = &joints[i];
+            let parent = match body.beta() {
+                None => previous,
+                Some(beta) => beta.z_after(pose_at(body.parent, scratch)),
+            };
+            let pose = body.across_as(kind(body), scratch[i].theta.map(F::load), F::load(q[i])).after(parent);
+            let z = pose.rot.rows[2];
+            let axis = match kind(body) {
+                JointKind::Prismatic => Motion { ang: Vec3::zero(), lin: z },
+                _ => Motion { ang: z, lin: pose.pos.cross(z) },
+            };
+            let s = &mut scratch[i];
+            s.pose = pose.map(F::store);
+            s.axis = axis.map(F::store);
+            s.composite = body.inertia.map(F::from_param).seen_from_parent(pose).map(F::store);
+            if let Some(Drive { rotor, elastic: Some(_) }) = &body.drive
                 && rotor.mount.is_some()
             {
-                let own = SymMat3::outer(rotor.axis_in()).scale(F::from_param(rotor.inertia));
-                match tree.support(rotor.mount, i).joint(i).and_then(|b| scratch.get_mut(b)) {
+                let carrier = if rotor.mount == body.parent && body.beta::<F>().is_none() {
+                    previous
+                } else {
+                    pose_at(rotor.mount, scratch)
+                };
+                let axis = carrier.rot.transpose_mul(rotor.axis_in());
+                let own = SymMat3::outer(axis).scale(F::from_param(rotor.inertia));
+                match tree.joint(rotor.mount).and_then(|b| scratch.get_mut(b)) {
                     Some(s) => s.composite.rotational = (s.composite.rotational.map(F::load) + own).map(F::store),
                     None => base.rotational += own,
                 }
             }
+            previous = pose;
         }
 
-        // Pass 2, tips to base: F = Iᶜ S, the column above the diagonal, Iᶜ_p += Xᵀ Iᶜ X
+        // Pass 2, tips to base: Iᶜ_p += Iᶜ,   F = Iᶜ S,   M_ji = S_jᵀ F for the joints j that support i
         for i in (0..n).rev() {
-            let s = &scratch[i];
-            let composite: SpatialInertia<F> = s.composite.map(F::load);
-            let across = |j: usize| {
-                let (joint, s, q) = (joints.get(j)?, scratch.get(j)?, q.get(j)?);
-                Some(joint.across(s.theta.map(F::load), F::load(*q)))
-            };
+            let body = &joints[i];
+            let composite: SpatialInertia<F> = scratch[i].composite.map(F::load);
+            match tree.joint(body.parent).and_then(|p| scratch.get_mut(p)) {
+                Some(parent) => parent.composite = (parent.composite.map(F::load) + composite).map(F::store),
+                None => base = base + composite,
+            }
+
             let mut write = |row: usize, entry: F| {
                 for at in [row * nv + lead + i, (lead + i) * nv + row] {
                     if let Some(m) = m.get_mut(at) {
@@ -106,35 +151,22 @@ impl<T: Scalar> Kernel<T> for Crba<'_, '_, T> {
                     }
                 }
             };
-            let mut f = unit_momentum(joints[i].joint, composite);
-            write(lead + i, joints[i].along_joint(f) + joints[i].rigid_reflected_inertia());
-            // F ← Xᵀ F (+ N J n at the carrier),  M_ji = S_jᵀ F
-            let mut at = Some(i);
-            while let Some(j) = at {
-                let Some((x, body)) = across(j).zip(joints.get(j)) else { break };
-                if tree.root.is_none() && body.parent.is_none() {
-                    break;
+            let axis: Motion<F> = scratch[i].axis.map(F::load);
+            let mut f = composite.momentum(axis);
+            write(lead + i, axis.dot(f) + body.rigid_reflected_inertia());
+            let rigid = body.rigid_rotor();
+            let mut support = body.parent;
+            while support.is_some() {
+                // A rigidly geared rotor leans on its carrier: F += [N J n; 0]
+                if let Some(rotor) = rigid.filter(|rotor| rotor.mount == support) {
+                    f.ang += pose_at(support, scratch).rot.transpose_mul(rotor.coupling());
                 }
-                f = x.inv_force(f);
-                if body.parent == joints[i].carrier() {
-                    f += joints[i].rigid_coupling();
-                }
-                at = tree.support(body.parent, j).joint(j);
-                match at.and_then(|p| joints.get(p).map(|joint| (p, joint))) {
-                    Some((p, joint)) => write(lead + p, joint.along_joint(f)),
-                    None => f.to_array().into_iter().enumerate().for_each(|(row, f)| write(row, f)),
-                }
+                let Some((j, s)) = tree.joint(support).and_then(|j| Some((j, scratch.get(j)?))) else { break };
+                write(lead + j, s.axis.map(F::load).dot(f));
+                support = joints.get(j).and_then(|body| body.parent);
             }
-
-            let support = tree.support(joints[i].parent, i);
-            if tree.root.is_none() && matches!(support, Support::Base) {
-                continue;
-            }
-            let Some(x) = across(i) else { continue };
-            let on_parent = x.inv_inertia(composite);
-            match support.joint(i).and_then(|b| scratch.get_mut(b)) {
-                Some(parent) => parent.composite = (parent.composite.map(F::load) + on_parent).map(F::store),
-                None => base = base + on_parent,
+            if support.is_some() {
+                f.to_array().into_iter().enumerate().for_each(|(row, f)| write(row, f));
             }
         }
 
@@ -149,16 +181,7 @@ impl<T: Scalar> Kernel<T> for Crba<'_, '_, T> {
                 }
             }
         }
-    }
-}
-
-/// `I S` for a joint along z.
-#[inline(always)]
-fn unit_momentum<F: Scalar>(joint: JointKind, i: SpatialInertia<F>) -> Force<F> {
-    let (o, h) = (F::zero(), i.first_moment);
-    match joint {
-        JointKind::Prismatic => Force { ang: Vec3::new(h.y, -h.x, o), lin: Vec3::new(o, o, i.mass) },
-        _ => Force { ang: Vec3::new(i.rotational.xz, i.rotational.yz, i.rotational.zz), lin: Vec3::new(-h.y, h.x, o) },
+        Ok(())
     }
 }
 
@@ -195,8 +218,9 @@ pub fn coupling<T: Scalar>(
                 }
                 break;
             }
-            s[on.v_index() * nv + column] = on.along_joint(f);
+            s[on.v_index() * nv + column] = on.joint.along(f);
             f = on.across(scratch[b].theta, q[on.q_index()]).inv_force(f);
+            f = on.beta().map_or(f, |beta| beta.z_back_force(f));
             at = on.parent();
         }
     }

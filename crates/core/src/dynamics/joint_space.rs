@@ -91,7 +91,7 @@ pub fn forward_in_joint_space<T: Scalar>(
             thetadd[k..k + 6].copy_from_slice(&free);
             continue;
         }
-        scratch[i].a = body.moved_along_joint(a_rest, qdd[k]);
+        scratch[i].a = body.joint.moved(a_rest, qdd[k]);
         thetadd[k] = qdd[k];
         let Some(drive) = &body.drive else { continue };
         let alpha = drive.rotor.mount().map_or(Vec3::zero(), |m| scratch[m].a.ang);
@@ -187,7 +187,7 @@ fn matrix_and_load<T: Scalar>(
             loop {
                 let on = &model.bodies[at];
                 for row in 0..on.joint.nv() {
-                    let force = if on.joint == JointKind::Floating { f.to_array()[row] } else { on.along_joint(f) };
+                    let force = if on.joint == JointKind::Floating { f.to_array()[row] } else { on.joint.along(f) };
                     matrix[(on.v_index() + row) * nv + k + c] = force;
                     matrix[(k + c) * nv + on.v_index() + row] = force;
                 }
@@ -206,7 +206,7 @@ fn matrix_and_load<T: Scalar>(
             // A rigid rotor's own row: B on the diagonal, and N J n·α, α what its carrier's velocity alone makes of it.
             matrix[k * nv + k] += body.rigid_reflected_inertia();
             let at_carrier = body.carrier().map_or(Vec3::zero(), |m| scratch[usize::from(m)].a.ang);
-            load[k] = s.u - body.along_joint(s.f) - body.rigid_coupling().ang.dot(at_carrier);
+            load[k] = s.u - body.joint.along(s.f) - body.rigid_coupling().ang.dot(at_carrier);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Where links and frames are, how they move, and how joint velocities move them.
 
 use super::check_scratch;
-use super::tree::{RootMotion, Support, Tree, turns};
+use super::tree::{RootMotion, Tree, turns};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
 use crate::model::{Body, JointKind, Model, SizeError};
@@ -30,10 +30,7 @@ pub enum Axes {
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; nothing is written then.
 pub fn placements<T: Scalar>(model: &Model<T::Param>, q: &[T], out: &mut [Transform<T>]) -> Result<(), SizeError> {
-    SizeError::check("q", q.len(), model.nq)?;
-    SizeError::check("out", out.len(), model.bodies.len())?;
-    T::dispatch(Placements { model, q, out });
-    Ok(())
+    T::dispatch(Placements { model, q, out })
 }
 
 struct Placements<'a, 'm, T: Scalar> {
@@ -43,13 +40,13 @@ struct Placements<'a, 'm, T: Scalar> {
 }
 
 impl<T: Scalar> Kernel<T> for Placements<'_, '_, T> {
-    type Output = ();
+    type Output = Result<(), SizeError>;
 
     #[inline(always)]
-    fn run<F: Over<T>>(self) {
+    fn run<F: Over<T>>(self) -> Result<(), SizeError> {
         let Self { model, q, out } = self;
         let tree = Tree::of(model);
-        let (Some((root_out, out)), Some(joints_q)) = (tree.split_bodies_mut(out), tree.positions(q)) else { return };
+        let ((root_out, out), joints_q) = (tree.bodies_mut("out", out)?, tree.positions(q)?);
         turns::<T, F, _>(tree.joints, joints_q, out, |pose, theta| {
             (pose.pos.x, pose.pos.y) = (theta.sin, theta.cos);
         });
@@ -63,10 +60,10 @@ impl<T: Scalar> Kernel<T> for Placements<'_, '_, T> {
         for i in 0..tree.joints.len() {
             let body = &tree.joints[i];
             let theta = Turn { sin: F::load(out[i].pos.x), cos: F::load(out[i].pos.y) };
-            let parent = match tree.support(body.parent, i) {
-                Support::Previous => previous,
-                Support::Base => base,
-                Support::Earlier(p) => out.get(p).map_or(base, |pose| pose.map(F::load)),
+            let parent = match body.beta() {
+                None => previous,
+                Some(beta) => beta
+                    .z_after(tree.joint(body.parent).and_then(|p| out.get(p)).map_or(base, |pose| pose.map(F::load))),
             };
             previous = body.across(theta, F::load(joints_q[i])).after(parent);
             out[i] = previous.map(F::store);
@@ -77,6 +74,7 @@ impl<T: Scalar> Kernel<T> for Placements<'_, '_, T> {
         if let (Some(root), [out, ..]) = (tree.root, root_out) {
             *out = root.frame.map(F::from_param).after(base).map(F::store);
         }
+        Ok(())
     }
 }
 
@@ -112,7 +110,8 @@ pub(super) fn transform<T: Scalar>(body: &Body<T::Param>, q: &[T]) -> Transform<
         return Transform { rot: root.rot, pos: root.pos };
     }
     let (sin, cos) = body.angle(q[at]).sin_cos();
-    body.across(Turn { sin, cos }, q[at]).to_transform()
+    let x = body.across(Turn { sin, cos }, q[at]);
+    x.after(body.beta().map_or(Transform::identity(), |beta| beta.z_after(Transform::identity())))
 }
 
 /// `v = X v_p + S q̇`.
@@ -121,7 +120,7 @@ pub(super) fn velocity<T: Scalar>(body: &Body<T::Param>, v_p: Motion<T>, q: &[T]
     if body.joint == JointKind::Floating {
         return RootMotion::<T>::of(q, &qd[at..]).v;
     }
-    body.moved_along_joint(transform(body, q).motion(v_p), qd[at])
+    body.joint.moved(transform(body, q).motion(v_p), qd[at])
 }
 
 /// Jacobian of a frame, `6 × nv` by rows, angular rows first: `J q̇` is the velocity of the frame's origin and the angular

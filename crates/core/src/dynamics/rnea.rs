@@ -12,11 +12,11 @@
 //! Cost O(n). No allocation, no panic, no branch on values.
 
 use super::drive_torque::transmission_error;
-use super::tree::{Moving, RootMotion, Support, Tree, first, store_first, turns};
-use super::{Acceleration, External, Inverse, State, check_external, check_scratch, check_state};
+use super::tree::{Moving, RootMotion, Tree, first, store_first, turns};
+use super::{Acceleration, External, Inverse, State};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
-use crate::model::{Drive, Model, SizeError};
+use crate::model::{Body, Drive, JointKind, Model, SizeError};
 use crate::spatial::{Force, Motion, Turn, Vec3};
 
 /// What the algorithm keeps for one body during a call.
@@ -26,6 +26,8 @@ pub struct RneaScratch<T> {
     theta: Turn<T>,
     /// Force the body needs.
     f: Force<T>,
+    /// Couple that its rotor needs of its carrier.
+    couple: Vec3<T>,
     /// Torque the rotor needs of its motor, reflected, besides what the transmission passes on.
     on_rotor: T,
     /// Motion, of a body that others than the next refer to.
@@ -35,7 +37,13 @@ pub struct RneaScratch<T> {
 impl<T: Scalar> RneaScratch<T> {
     /// Scratch with any content.
     pub fn new() -> Self {
-        Self { theta: Turn::none(), f: Force::zero(), on_rotor: T::zero(), moving: Moving::at_rest() }
+        Self {
+            theta: Turn::none(),
+            f: Force::zero(),
+            couple: Vec3::zero(),
+            on_rotor: T::zero(),
+            moving: Moving::at_rest(),
+        }
     }
 }
 
@@ -62,45 +70,42 @@ pub fn rnea<T: Scalar>(
     scratch: &mut [RneaScratch<T>],
     out: Inverse<T>,
 ) -> Result<(), SizeError> {
-    check_state(model, &state)?;
-    check_external(model, &ext)?;
-    check_scratch(model, scratch)?;
-    SizeError::check("qdd", accel.qdd.len(), model.nv)?;
-    SizeError::check("thetadd", accel.thetadd.len(), model.nv)?;
-    SizeError::check("tau_j", out.tau_j.len(), model.nv)?;
-    SizeError::check("tau", out.tau.len(), model.nv)?;
-    T::dispatch(Rnea { model, state, accel, ext, scratch, out });
-    Ok(())
+    T::dispatch(Rnea { model, state: &state, accel: &accel, ext: &ext, scratch, out: &mut { out } })
 }
 
 struct Rnea<'a, 'm, T: Scalar> {
     model: &'a Model<'m, T::Param>,
-    state: State<'a, T>,
-    accel: Acceleration<'a, T>,
-    ext: External<'a, T>,
+    state: &'a State<'a, T>,
+    accel: &'a Acceleration<'a, T>,
+    ext: &'a External<'a, T>,
     scratch: &'a mut [RneaScratch<T>],
-    out: Inverse<'a, T>,
+    out: &'a mut Inverse<'a, T>,
 }
 
 impl<T: Scalar> Kernel<T> for Rnea<'_, '_, T> {
-    type Output = ();
+    type Output = Result<(), SizeError>;
 
     #[inline(always)]
-    fn run<F: Over<T>>(self) {
+    fn run<F: Over<T>>(self) -> Result<(), SizeError> {
+        if self.model.revolute { self.passes::<F, true>() } else { self.passes::<F, false>() }
+    }
+}
+
+impl<T: Scalar> Rnea<'_, '_, T> {
+    /// `REVOLUTE` says that all joints are.
+    #[inline(always)]
+    fn passes<F: Over<T>, const REVOLUTE: bool>(self) -> Result<(), SizeError> {
         let Self { model, state, accel, ext, scratch, out } = self;
         let tree = Tree::of(model);
         let (joints, n) = (tree.joints, tree.joints.len());
-        let (Some(q), Some(qd), Some(theta), Some(thetad), Some(qdd), Some(thetadd)) = (
-            tree.positions(state.q),
-            tree.velocities(state.qd),
-            tree.velocities(state.theta),
-            tree.velocities(state.thetad),
-            tree.velocities(accel.qdd),
-            tree.velocities(accel.thetadd),
-        ) else {
-            return;
-        };
-        let Some(scratch) = tree.bodies_mut(scratch) else { return };
+        let kind = |body: &Body<T::Param>| if REVOLUTE { JointKind::Revolute } else { body.joint };
+        let (q, qd) = (tree.positions(state.q)?, tree.velocities("qd", state.qd)?);
+        let (theta, thetad) = (tree.velocities("theta", state.theta)?, tree.velocities("thetad", state.thetad)?);
+        let (qdd, thetadd) = (tree.velocities("qdd", accel.qdd)?, tree.velocities("thetadd", accel.thetadd)?);
+        let (wrenches, tau_ext) = tree.external(ext)?;
+        let (_, scratch) = tree.bodies_mut("scratch", scratch)?;
+        let (root_tau_j, tau_j) = tree.velocities_mut("tau_j", out.tau_j)?;
+        let (root_tau, tau) = tree.velocities_mut("tau", out.tau)?;
         turns::<T, F, _>(joints, q, scratch, |s, theta| s.theta = theta);
 
         // The base: at rest, or the root with its own equation.
@@ -119,24 +124,29 @@ impl<T: Scalar> Kernel<T> for Rnea<'_, '_, T> {
             }
         }
 
+        let at_body = |b: Option<u16>, scratch: &[RneaScratch<T>]| {
+            tree.joint(b).and_then(|b| scratch.get(b)).map_or(base, |s| s.moving.map(F::load))
+        };
+
         // Pass 1, base to tips: motion, and the force each body needs.
         let mut previous = base;
         for i in 0..n {
             let body = &joints[i];
-            let of = |b: Support, scratch: &[RneaScratch<T>]| match b {
-                Support::Previous => previous,
-                Support::Base => base,
-                Support::Earlier(p) => scratch.get(p).map_or(base, |s| s.moving.map(F::load)),
-            };
             let (q, qd, qdd) = (F::load(q[i]), F::load(qd[i]), F::load(qdd[i]));
-            let parent = of(tree.support(body.parent, i), scratch);
-            let x = body.across(scratch[i].theta.map(F::load), q);
-            let moving = parent.across(&x, body.joint, qd, qdd);
+            let (parent, turned) = match body.beta() {
+                None => (previous, previous),
+                Some(beta) => {
+                    let parent = at_body(body.parent, scratch);
+                    (parent, parent.turned(beta))
+                }
+            };
+            let x = body.across_as(kind(body), scratch[i].theta.map(F::load), q);
+            let moving = turned.across(&x, kind(body), qd, qdd);
 
             // f = m a + Ω h − f_ext,   n = I α + ω × I ω + h × a − n_ext
             let mut f = moving.force_on(body.inertia.map(F::from_param));
-            if let Some(wrench) = tree.bodies(ext.wrenches).and_then(|w| w.get(i)) {
-                f -= body.frame.map(F::from_param).inv_force(wrench.map(F::load));
+            if let Some(wrenches) = wrenches {
+                f -= body.frame.map(F::from_param).inv_force(wrenches[i].map(F::load));
             }
             scratch[i].f = f.map(F::store);
 
@@ -146,26 +156,24 @@ impl<T: Scalar> Kernel<T> for Rnea<'_, '_, T> {
                     Some(_) => (F::load(thetad[i]), F::load(thetadd[i])),
                     None => (qd, qdd),
                 };
-                let mut on_rotor =
-                    F::from_param(rotor.reflected_inertia).mul_add(thetadd, rotor.reflected_friction(thetad));
-                if rotor.mount.is_some() {
-                    let at = tree.support(rotor.mount, i);
-                    let Moving { omega, accel, .. } = of(at, scratch);
-                    on_rotor = rotor.coupling::<F>().dot(accel.ang) + on_rotor;
-                    let (h, h_dot) = match elastic {
-                        Some(_) => (rotor.axial_momentum(thetad, omega), rotor.axial_momentum(thetadd, accel.ang)),
-                        None => {
-                            (rotor.axial_momentum(thetad, Vec3::zero()), rotor.axial_momentum(thetadd, Vec3::zero()))
-                        }
-                    };
-                    let axis = rotor.axis_in::<F>();
-                    let couple = omega.cross_plus(axis.scale(h), axis.scale(h_dot));
-                    match at.joint(i).and_then(|b| scratch.get_mut(b)) {
+                let own = F::from_param(rotor.reflected_inertia).mul_add(thetadd, rotor.reflected_friction(thetad));
+                let beside = rotor.mount == body.parent;
+                let carrier = if beside { parent } else { at_body(rotor.mount, scratch) };
+                let (omega, alpha) = (carrier.omega, carrier.accel.ang);
+                let (h, h_dot) = match elastic {
+                    Some(_) => (rotor.axial_momentum(thetad, omega), rotor.axial_momentum(thetadd, alpha)),
+                    None => (rotor.axial_momentum(thetad, Vec3::zero()), rotor.axial_momentum(thetadd, Vec3::zero())),
+                };
+                let axis = rotor.axis_in::<F>();
+                let couple = omega.cross_plus(axis.scale(h), axis.scale(h_dot));
+                scratch[i].on_rotor = (own + rotor.coupling::<F>().dot(alpha)).store();
+                scratch[i].couple = couple.map(F::store);
+                if !beside {
+                    match tree.joint(rotor.mount).and_then(|b| scratch.get_mut(b)) {
                         Some(carrier) => carrier.f.ang = (carrier.f.ang.map(F::load) + couple).map(F::store),
                         None => base_force.ang += couple,
                     }
                 }
-                scratch[i].on_rotor = on_rotor.store();
             }
             if body.shared {
                 scratch[i].moving = moving.map(F::store);
@@ -174,53 +182,51 @@ impl<T: Scalar> Kernel<T> for Rnea<'_, '_, T> {
         }
 
         // Pass 2, tips to base: forces across the joints.
-        let (Some((root_tau_j, tau_j)), Some((root_tau, tau))) = (tree.split_mut(out.tau_j), tree.split_mut(out.tau))
-        else {
-            return;
-        };
         let mut incoming = Force::zero();
         for i in (0..n).rev() {
-            let body = &joints[i];
-            let f = scratch[i].f.map(F::load) + incoming;
+            let (body, s) = (&joints[i], &scratch[i]);
+            let f = s.f.map(F::load) + incoming;
 
             // τ_J = Sᵀ f + f_l(q̇) − τ_ext,   τ = (1 − e') τ_J + N ḣ + N f_m
-            let load = body.friction.torque(F::load(qd[i])) - tree.optional::<T, F>(ext.tau, i);
-            let joint = body.along_joint(f) + load;
-            tau_j[i] = joint.store();
-            tau[i] = match &body.drive {
-                None => joint.store(),
-                Some(Drive { rotor, elastic }) => {
-                    let on_motor = match elastic {
-                        Some(elastic) => F::one() - transmission_error(elastic, rotor, F::load(theta[i])).1,
-                        None => F::one(),
-                    };
-                    on_motor.mul_add(joint, F::load(scratch[i].on_rotor)).store()
-                }
-            };
-
-            // f_p += Xᵀ f
-            let support = tree.support(body.parent, i);
-            if tree.root.is_none() && matches!(support, Support::Base) {
-                incoming = Force::zero();
-                continue;
+            let mut joint = kind(body).along(f) + body.friction.torque(F::load(qd[i]));
+            if let Some(tau_ext) = tau_ext {
+                joint -= F::load(tau_ext[i]);
             }
-            let on_parent = body.across(scratch[i].theta.map(F::load), F::load(q[i])).inv_force(f);
-            incoming = Force::zero();
-            match support {
-                Support::Previous => incoming = on_parent,
-                Support::Base => base_force += on_parent,
-                Support::Earlier(p) => {
-                    if let Some(parent) = scratch.get_mut(p) {
-                        parent.f = (parent.f.map(F::load) + on_parent).map(F::store);
-                    }
+            // f_p += Xᵀ f
+            let x = body.across_as(kind(body), s.theta.map(F::load), F::load(q[i]));
+            let mut on_parent = x.inv_force(f);
+            if let Some(beta) = body.beta() {
+                on_parent = beta.z_back_force(on_parent);
+            }
+
+            let mut motor = joint;
+            if let Some(Drive { rotor, elastic }) = &body.drive {
+                if let Some(elastic) = elastic {
+                    motor = (F::one() - transmission_error(elastic, rotor, F::load(theta[i])).1) * joint;
+                }
+                motor += F::load(s.on_rotor);
+                if rotor.mount == body.parent {
+                    on_parent.ang += s.couple.map(F::load);
+                }
+            }
+            tau_j[i] = joint.store();
+            tau[i] = motor.store();
+
+            incoming = on_parent;
+            if body.placement.beta.is_some() {
+                incoming = Force::zero();
+                match tree.joint(body.parent).and_then(|p| scratch.get_mut(p)) {
+                    Some(parent) => parent.f = (parent.f.map(F::load) + on_parent).map(F::store),
+                    None => base_force += on_parent,
                 }
             }
         }
 
         if tree.root.is_some() {
-            let wrench = base_force + incoming - Force::from(first::<T, F, 6>(ext.tau));
+            let wrench = base_force - Force::from(first::<T, F, 6>(ext.tau));
             store_first(root_tau_j, wrench.to_array());
             store_first(root_tau, wrench.to_array());
         }
+        Ok(())
     }
 }

@@ -1,8 +1,9 @@
 //! The tree as the recursions walk it: a base, fixed or floating, and joints of one degree of freedom in order.
 
+use super::External;
 use crate::Scalar;
 use crate::dispatch::Over;
-use crate::model::{Body, JointKind, Model};
+use crate::model::{Body, JointKind, Model, SizeError};
 use crate::scalar::ANGLES;
 use crate::spatial::{Force, JointTransform, Mat3, Motion, SpatialInertia, Turn, Vec3};
 
@@ -19,29 +20,6 @@ pub(super) struct Tree<'a, P> {
     velocities: usize,
 }
 
-/// The body a joint hangs on, or the one that carries its rotor.
-#[derive(Clone, Copy)]
-pub(super) enum Support {
-    /// The one before in order, or the base for the first joint.
-    Previous,
-    /// The base.
-    Base,
-    /// One further back, by its index among the joints.
-    Earlier(usize),
-}
-
-impl Support {
-    /// Index among the joints, as seen from joint `i`; `None` is the base.
-    #[inline(always)]
-    pub(super) fn joint(self, i: usize) -> Option<usize> {
-        match self {
-            Self::Previous => i.checked_sub(1),
-            Self::Base => None,
-            Self::Earlier(b) => Some(b),
-        }
-    }
-}
-
 impl<'a, P: Scalar> Tree<'a, P> {
     #[inline(always)]
     pub(super) fn of(model: &Model<'a, P>) -> Self {
@@ -53,57 +31,85 @@ impl<'a, P: Scalar> Tree<'a, P> {
         }
     }
 
-    /// Entries of a slice over all bodies that belong to the joints' bodies.
+    /// The joints' entries of a slice over all bodies.
     #[inline(always)]
-    pub(super) fn bodies<'s, X>(&self, all: &'s [X]) -> Option<&'s [X]> {
-        all.get(self.bodies..)?.get(..self.joints.len())
+    pub(super) fn bodies<'s, X>(&self, argument: &'static str, all: &'s [X]) -> Result<&'s [X], SizeError> {
+        rest(argument, all, self.bodies, self.joints.len())
     }
 
-    /// The root's and the joints' part of a slice over all bodies.
+    /// The same, and the root's entries before it.
     #[inline(always)]
-    pub(super) fn split_bodies_mut<'s, X>(&self, all: &'s mut [X]) -> Option<(&'s mut [X], &'s mut [X])> {
-        let (root, joints) = all.split_at_mut_checked(self.bodies)?;
-        Some((root, joints.get_mut(..self.joints.len())?))
+    pub(super) fn bodies_mut<'s, X>(
+        &self,
+        argument: &'static str,
+        all: &'s mut [X],
+    ) -> Result<(&'s mut [X], &'s mut [X]), SizeError> {
+        split(argument, all, self.bodies, self.joints.len())
     }
 
+    /// The joints' entries of `q`.
     #[inline(always)]
-    pub(super) fn bodies_mut<'s, X>(&self, all: &'s mut [X]) -> Option<&'s mut [X]> {
-        all.get_mut(self.bodies..)?.get_mut(..self.joints.len())
+    pub(super) fn positions<'s, X>(&self, all: &'s [X]) -> Result<&'s [X], SizeError> {
+        rest("q", all, self.positions, self.joints.len())
     }
 
-    /// Entries of `q` that belong to the joints.
+    /// The joints' entries of a slice over the velocities.
     #[inline(always)]
-    pub(super) fn positions<'s, X>(&self, q: &'s [X]) -> Option<&'s [X]> {
-        q.get(self.positions..)?.get(..self.joints.len())
+    pub(super) fn velocities<'s, X>(&self, argument: &'static str, all: &'s [X]) -> Result<&'s [X], SizeError> {
+        rest(argument, all, self.velocities, self.joints.len())
     }
 
-    /// Entries of a slice over the velocities that belong to the joints.
+    /// The same, and the root's entries before it.
     #[inline(always)]
-    pub(super) fn velocities<'s, X>(&self, all: &'s [X]) -> Option<&'s [X]> {
-        all.get(self.velocities..)?.get(..self.joints.len())
+    pub(super) fn velocities_mut<'s, X>(
+        &self,
+        argument: &'static str,
+        all: &'s mut [X],
+    ) -> Result<(&'s mut [X], &'s mut [X]), SizeError> {
+        split(argument, all, self.velocities, self.joints.len())
     }
 
-    /// The root's and the joints' part of a slice over the velocities.
+    /// The joints' entries of the external loads, if there are any.
     #[inline(always)]
-    pub(super) fn split_mut<'s, X>(&self, all: &'s mut [X]) -> Option<(&'s mut [X], &'s mut [X])> {
-        let (root, joints) = all.split_at_mut_checked(self.velocities)?;
-        Some((root, joints.get_mut(..self.joints.len())?))
+    #[expect(clippy::type_complexity)]
+    pub(super) fn external<'s, T>(
+        &self,
+        ext: &External<'s, T>,
+    ) -> Result<(Option<&'s [Force<T>]>, Option<&'s [T]>), SizeError> {
+        let (wrenches, tau) = (ext.wrenches, ext.tau);
+        let wrenches = if wrenches.is_empty() { None } else { Some(self.bodies("external wrenches", wrenches)?) };
+        let tau = if tau.is_empty() { None } else { Some(self.velocities("external tau", tau)?) };
+        Ok((wrenches, tau))
     }
 
-    /// A value of the whole robot's slice for joint `i`, zero if the slice is empty.
+    /// Index of a body among the joints; `None` is the base.
     #[inline(always)]
-    pub(super) fn optional<T: Scalar, F: Over<T>>(&self, all: &[T], i: usize) -> F {
-        all.get(self.velocities + i).map_or(F::zero(), |x| F::load(*x))
+    pub(super) fn joint(&self, body: Option<u16>) -> Option<usize> {
+        usize::from(body?).checked_sub(self.bodies)
     }
+}
 
-    /// A body of the model, as seen from joint `i`.
-    #[inline(always)]
-    pub(super) fn support(&self, body: Option<u16>, i: usize) -> Support {
-        match body.map(usize::from) {
-            Some(b) if b + 1 == i + self.bodies => Support::Previous,
-            Some(b) if b >= self.bodies => Support::Earlier(b - self.bodies),
-            _ => Support::Base,
-        }
+/// What follows the first `lead` of `lead + n` entries.
+#[inline(always)]
+fn rest<'s, X>(argument: &'static str, all: &'s [X], lead: usize, n: usize) -> Result<&'s [X], SizeError> {
+    match all.get(lead..) {
+        Some(rest) if rest.len() == n => Ok(rest),
+        _ => Err(SizeError { argument, expected: lead + n, given: all.len() }),
+    }
+}
+
+/// The first `lead` of `lead + n` entries, and the others.
+#[inline(always)]
+fn split<'s, X>(
+    argument: &'static str,
+    all: &'s mut [X],
+    lead: usize,
+    n: usize,
+) -> Result<(&'s mut [X], &'s mut [X]), SizeError> {
+    let given = all.len();
+    match all.split_at_mut_checked(lead) {
+        Some((root, rest)) if rest.len() == n => Ok((root, rest)),
+        _ => Err(SizeError { argument, expected: lead + n, given }),
     }
 }
 
@@ -115,14 +121,21 @@ pub(super) fn turns<T: Scalar, F: Over<T>, S>(
     scratch: &mut [S],
     mut keep: impl FnMut(&mut S, Turn<T>),
 ) {
-    for ((joints, q), scratch) in joints.chunks(ANGLES).zip(q.chunks(ANGLES)).zip(scratch.chunks_mut(ANGLES)) {
+    let mut start = 0;
+    while start < joints.len() {
         let mut angles = [F::zero(); ANGLES];
-        for ((angle, joint), q) in angles.iter_mut().zip(joints).zip(q) {
-            *angle = joint.angle(F::load(*q));
+        for k in 0..ANGLES {
+            if let (Some(joint), Some(q)) = (joints.get(start + k), q.get(start + k)) {
+                angles[k] = joint.angle(F::load(*q));
+            }
         }
-        for (s, (sin, cos)) in scratch.iter_mut().zip(F::sin_cos_each(angles)) {
-            keep(s, Turn { sin: sin.store(), cos: cos.store() });
+        let turns = F::sin_cos_each(angles);
+        for k in 0..ANGLES {
+            if let Some(s) = scratch.get_mut(start + k) {
+                keep(s, Turn { sin: turns[k].0.store(), cos: turns[k].1.store() });
+            }
         }
+        start += ANGLES;
     }
 }
 
@@ -177,44 +190,43 @@ pub(super) struct Moving<T> {
     pub(super) omega: Vec3<T>,
     /// `α` [rad/s²] and `a` [m/s²].
     pub(super) accel: Motion<T>,
-    /// `Ω = α× + ω× ω×`: a point at `r` accelerates by `a + Ω r` [1/s²].
-    pub(super) field: Mat3<T>,
 }
 
 impl<T: Scalar> Moving<T> {
     #[inline(always)]
     pub(super) fn new(omega: Vec3<T>, accel: Motion<T>) -> Self {
-        // ω× ω× = ω ωᵀ − ω·ω 1
-        let (w, a) = (omega, accel.ang);
-        let (xx, yy, zz) = (w.x * w.x, w.y * w.y, w.z * w.z);
-        let off = |p: T, q: T, a: T| (p.mul_add(q, a), p.mul_add(q, -a));
-        let ((yx, xy), (xz, zx), (zy, yz)) = (off(w.x, w.y, a.z), off(w.x, w.z, a.y), off(w.y, w.z, a.x));
-        let field = Mat3::from_rows(
-            Vec3::new(-(yy + zz), xy, xz),
-            Vec3::new(yx, -(xx + zz), yz),
-            Vec3::new(zx, zy, -(xx + yy)),
-        );
-        Self { omega, accel, field }
+        Self { omega, accel }
+    }
+
+    /// `base + α × r + ω × (ω × r)`
+    #[inline(always)]
+    fn field(&self, r: Vec3<T>, base: Vec3<T>) -> Vec3<T> {
+        let w = self.omega;
+        self.accel.ang.cross_plus(r, base).plus_scaled(w.dot(r), w).plus_scaled(-w.dot(w), r)
     }
 
     #[inline(always)]
     pub(super) fn map<U>(self, mut f: impl FnMut(T) -> U) -> Moving<U> {
-        Moving { omega: self.omega.map(&mut f), accel: self.accel.map(&mut f), field: self.field.map(&mut f) }
+        Moving { omega: self.omega.map(&mut f), accel: self.accel.map(&mut f) }
     }
 
     #[inline(always)]
     pub(super) fn at_rest() -> Self {
-        Self { omega: Vec3::zero(), accel: Motion::zero(), field: Mat3::zero() }
+        Self { omega: Vec3::zero(), accel: Motion::zero() }
+    }
+
+    /// The same in axes turned about z.
+    #[inline(always)]
+    pub(super) fn turned(self, turn: Turn<T>) -> Self {
+        Self { omega: turn.z(self.omega), accel: turn.z_motion(self.accel) }
     }
 
     /// The body across a joint of velocity `qd` and acceleration `qdd`.
     #[inline(always)]
     pub(super) fn across(self, x: &JointTransform<T>, joint: JointKind, qd: T, qdd: T) -> Self {
         // ω = E ω_p,   α = E α_p,   a = E (a_p + Ω_p r), and what the joint adds:
-        let turned = x.turned_tensor(self.field);
-        let omega = x.rotate(x.turned(self.omega));
-        let ang = x.rotate(x.turned(self.accel.ang));
-        let lin = x.rotate(x.turned(self.accel.lin) + turned * x.offset);
+        let (omega, ang) = (x.rotate(self.omega), x.rotate(self.accel.ang));
+        let lin = x.rotate(self.field(x.offset, self.accel.lin));
         match joint {
             // a += z q̈ + 2 ω × z q̇
             JointKind::Prismatic => {
@@ -237,7 +249,7 @@ impl<T: Scalar> Moving<T> {
         let (h, i, a) = (body.first_moment, body.rotational, self.accel);
         Force {
             ang: h.cross_plus(a.lin, self.omega.cross_plus(i * self.omega, i * a.ang)),
-            lin: (self.field * h).plus_scaled(body.mass, a.lin),
+            lin: self.field(h, a.lin.scale(body.mass)),
         }
     }
 }

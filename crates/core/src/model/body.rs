@@ -37,7 +37,8 @@ impl JointKind {
 /// Where a joint sits in its parent: the constant part of its [`JointTransform`].
 #[derive(Clone, Copy, Debug)]
 pub struct Placement<T> {
-    /// `β`: turn about the parent's z-axis; `None` where the parent's x-axis already is the common normal of both axes.
+    /// `β`: turn about the parent's z-axis to the common normal of both axes. `None` says that the parent is the body before,
+    /// not a floating root, and that its x-axis is the common normal already.
     pub beta: Option<Turn<T>>,
     /// `α`: angle from the parent's z-axis to the joint axis, about x.
     pub alpha: Turn<T>,
@@ -108,17 +109,29 @@ impl<T: Scalar> Body<T> {
         }
     }
 
-    /// The transform from the parent to this body, the joint being at `q` and its angle turned by `theta`.
+    /// The transform from the parent, its axes turned by `β`, to this body, the joint being at `q` and turned by `theta`.
     #[inline(always)]
     pub(crate) fn across<F: Scalar<Param = T>>(&self, theta: Turn<F>, q: F) -> JointTransform<F> {
+        self.across_as(self.joint, theta, q)
+    }
+
+    /// The same where the kind of joint is known.
+    #[inline(always)]
+    pub(crate) fn across_as<F: Scalar<Param = T>>(&self, joint: JointKind, theta: Turn<F>, q: F) -> JointTransform<F> {
         let at = &self.placement;
         let alpha = at.alpha.map(F::from_param);
         let mut offset = at.offset.map(F::from_param);
-        if self.joint == JointKind::Prismatic {
+        if joint == JointKind::Prismatic {
             // Along the joint axis, which is (0, −sin α, cos α) in the parent's axes turned by β.
             offset = offset.plus_scaled(q, Vec3::new(F::zero(), -alpha.sin, alpha.cos));
         }
-        JointTransform { beta: at.beta.map(|b| b.map(F::from_param)), alpha, theta, offset }
+        JointTransform { alpha, theta, offset }
+    }
+
+    /// `β`, unless the joint continues a chain.
+    #[inline(always)]
+    pub(crate) fn beta<F: Scalar<Param = T>>(&self) -> Option<Turn<F>> {
+        self.placement.beta.map(|b| b.map(F::from_param))
     }
 
     /// The same record in another scalar.
@@ -145,12 +158,12 @@ impl<T: Scalar> Body<T> {
 }
 
 /// What the recursions ask of a joint of one degree of freedom, its axis along z.
-impl<T: Scalar> Body<T> {
+impl JointKind {
     /// `Iᴬ S`.
     #[inline(always)]
-    pub(crate) fn column_of<F: Scalar>(&self, ia: &ArticulatedInertia<F>) -> Force<F> {
-        match self.joint {
-            JointKind::Prismatic => {
+    pub(crate) fn column_of<F: Scalar>(self, ia: &ArticulatedInertia<F>) -> Force<F> {
+        match self {
+            Self::Prismatic => {
                 let [x, y, z] = ia.mixed.rows;
                 Force { ang: Vec3::new(x.z, y.z, z.z), lin: Vec3::new(ia.lin.xz, ia.lin.yz, ia.lin.zz) }
             }
@@ -160,23 +173,26 @@ impl<T: Scalar> Body<T> {
 
     /// `Sᵀ f`.
     #[inline(always)]
-    pub(crate) fn along_joint<F: Scalar>(&self, f: Force<F>) -> F {
-        match self.joint {
-            JointKind::Prismatic => f.lin.z,
+    pub(crate) fn along<F: Scalar>(self, f: Force<F>) -> F {
+        match self {
+            Self::Prismatic => f.lin.z,
             _ => f.ang.z,
         }
     }
 
     /// `m + S s`.
     #[inline(always)]
-    pub(crate) fn moved_along_joint<F: Scalar>(&self, mut m: Motion<F>, s: F) -> Motion<F> {
-        match self.joint {
-            JointKind::Prismatic => m.lin.z += s,
+    pub(crate) fn moved<F: Scalar>(self, mut m: Motion<F>, s: F) -> Motion<F> {
+        match self {
+            Self::Prismatic => m.lin.z += s,
             _ => m.ang.z += s,
         }
         m
     }
+}
 
+/// What the recursions ask of a rotor.
+impl<T: Scalar> Body<T> {
     /// A rotor that turns with the joint.
     #[inline(always)]
     pub(crate) fn rigid_rotor(&self) -> Option<&Rotor<T>> {

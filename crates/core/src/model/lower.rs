@@ -52,7 +52,10 @@ impl RobotSpec<'_> {
                 q_index: iq,
                 v_index: iv,
                 shared: false,
-                placement: placement(tree),
+                placement: placement(
+                    tree,
+                    i > 0 && spec.parent == Some(i - 1) && bodies[i - 1].joint != JointKind::Floating,
+                ),
                 inertia: spec.inertia.seen_from_parent(frame),
                 frame,
                 friction: spec.friction,
@@ -199,12 +202,12 @@ impl RobotSpec<'_> {
 /// Sine of an angle below which axes count as parallel, and a direction as one of the frame's own [–].
 const PARALLEL: f64 = 1e-15;
 
-/// `tree`, from parent to joint at `q = 0`, as `Rz(zero) Rx(α) Rz(β)` and the offset.
-fn placement(tree: Transform<f64>) -> Placement<f64> {
+/// `tree`, from parent to joint at `q = 0`, as `Rz(zero) Rx(α) Rz(β)` and the offset; `β` is zero in a chain.
+fn placement(tree: Transform<f64>, chained: bool) -> Placement<f64> {
     let z = tree.rot.rows[2];
     // The joint axis is (sin α sin β, −sin α cos β, cos α) in the parent's axes.
     let across = Scalar::sqrt(z.x * z.x + z.y * z.y);
-    let beta = if across <= PARALLEL || f64::abs(z.x) <= PARALLEL {
+    let beta = if chained || across <= PARALLEL || f64::abs(z.x) <= PARALLEL {
         Turn::none()
     } else {
         Turn { sin: z.x / across, cos: -z.y / across }
@@ -219,7 +222,7 @@ fn placement(tree: Transform<f64>) -> Placement<f64> {
     // The common normal, which is x in the axes turned by β, seen from the joint: (cos zero, −sin zero, 0).
     let normal = tree.rot * beta.z_back(Vec3::new(1.0, 0.0, 0.0));
     Placement {
-        beta: (beta != Turn::none()).then_some(beta),
+        beta: (!chained).then_some(beta),
         alpha,
         offset: beta.z(tree.pos),
         zero: Scalar::atan2(-normal.y, normal.x),

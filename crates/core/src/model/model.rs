@@ -14,6 +14,10 @@ pub struct Model<'a, T> {
     pub(crate) nq: usize,
     pub(crate) nv: usize,
     pub(crate) floating: bool,
+    /// Whether all joints but a floating root are revolute.
+    pub(crate) revolute: bool,
+    /// Whether, besides, no gear is rigid.
+    pub(crate) plain: bool,
     remote_rigid_rotor: bool,
 }
 
@@ -26,12 +30,15 @@ impl<'a, T: Scalar> Model<'a, T> {
             [] => false,
         };
         let (nq, nv) = if floating { (bodies.len() + 6, bodies.len() + 5) } else { (bodies.len(), bodies.len()) };
-        let (mut remote_rigid_rotor, mut rest) = (false, bodies);
+        let (mut revolute, mut plain, mut remote_rigid_rotor, mut rest) = (true, true, false, bodies);
         while let [body, tail @ ..] = rest {
+            let elastic = matches!(&body.drive, None | Some(Drive { elastic: Some(_), .. }));
+            revolute &= !matches!(body.joint, JointKind::Prismatic);
+            plain &= elastic && revolute;
             remote_rigid_rotor |= carries_remotely(body);
             rest = tail;
         }
-        Self { bodies, knots, gravity, nq, nv, floating, remote_rigid_rotor }
+        Self { bodies, knots, gravity, nq, nv, floating, revolute, plain, remote_rigid_rotor }
     }
 
     /// The records, parents before children.

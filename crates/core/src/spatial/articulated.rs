@@ -48,16 +48,14 @@ impl<T: Scalar> ArticulatedInertia<T> {
         let g2 = h2.plus_scaled(r.x, m[1]).plus_scaled(-r.y, m[0]);
         // I' = I − H r× + r× H'ᵀ: entry (i, j) gains (r × h_i)_j + (r × h'_j)_i
         let (d0, d1, d2) = (g0 + h0, g1 + h1, g2 + h2);
-        let x = |a: Vec3<T>, c: T| r.y.mul_add(a.z, (-r.z).mul_add(a.y, c));
-        let y = |a: Vec3<T>, c: T| r.z.mul_add(a.x, (-r.x).mul_add(a.z, c));
-        let z = |a: Vec3<T>, c: T| r.x.mul_add(a.y, (-r.y).mul_add(a.x, c));
+        let i = self.ang;
         let ang = SymMat3 {
-            xx: x(d0, self.ang.xx),
-            yy: y(d1, self.ang.yy),
-            zz: z(d2, self.ang.zz),
-            xy: x(g1, y(h0, self.ang.xy)),
-            xz: x(g2, z(h0, self.ang.xz)),
-            yz: y(g2, z(h1, self.ang.yz)),
+            xx: cross_term(r.y, d0.z, r.z, d0.y, i.xx),
+            yy: cross_term(r.z, d1.x, r.x, d1.z, i.yy),
+            zz: cross_term(r.x, d2.y, r.y, d2.x, i.zz),
+            xy: cross_term(r.y, g1.z, r.z, g1.y, cross_term(r.z, h0.x, r.x, h0.z, i.xy)),
+            xz: cross_term(r.y, g2.z, r.z, g2.y, cross_term(r.x, h0.y, r.y, h0.x, i.xz)),
+            yz: cross_term(r.z, g2.x, r.x, g2.z, cross_term(r.x, h1.y, r.y, h1.x, i.yz)),
         };
         Self { ang, mixed: Mat3::from_rows(g0, g1, g2), lin: self.lin }
     }
@@ -107,14 +105,22 @@ impl<T: Scalar> AddAssign for ArticulatedInertia<T> {
 
 impl<T: Scalar> ArticulatedInertia<T> {
     /// `Iᴬ⁻¹ f`, by eliminating the linear part: `M` and its Schur complement in `I` are both symmetric and positive.
+    #[inline(always)]
     pub fn solve(&self, f: Force<T>) -> Motion<T> {
         // M v = f − Hᵀ ω  into  n = I ω + H v:   (I − H M⁻¹ Hᵀ) ω = n − H M⁻¹ f
         let m = Cholesky::of(self.lin);
-        let columns = self.mixed.rows.map(|row| m.solve(row));
-        let schur = self.ang - (self.mixed * Mat3 { rows: columns }.transpose()).symmetric();
+        let [a, b, c] = self.mixed.rows;
+        let columns = Mat3::from_rows(m.solve(a), m.solve(b), m.solve(c));
+        let schur = self.ang - (self.mixed * columns.transpose()).symmetric();
         let ang = Cholesky::of(schur).solve(f.ang - self.mixed * m.solve(f.lin));
         Motion { ang, lin: m.solve(f.lin - self.mixed.transpose_mul(ang)) }
     }
+}
+
+/// `a b − c d + e`: a coordinate of a vector product, added.
+#[inline(always)]
+fn cross_term<T: Scalar>(a: T, b: T, c: T, d: T, e: T) -> T {
+    a.mul_add(b, (-c).mul_add(d, e))
 }
 
 /// `A = L D Lᵀ` of a symmetric positive 3×3 matrix, with the reciprocals of `D`.
@@ -126,6 +132,7 @@ struct Cholesky<T> {
 }
 
 impl<T: Scalar> Cholesky<T> {
+    #[inline(always)]
     fn of(a: SymMat3<T>) -> Self {
         let d0 = T::one() / a.xx;
         let (l10, l20) = (a.xy * d0, a.xz * d0);
@@ -135,6 +142,7 @@ impl<T: Scalar> Cholesky<T> {
         Self { l10, l20, l21, d_inv: [d0, d1, d2] }
     }
 
+    #[inline(always)]
     fn solve(&self, b: Vec3<T>) -> Vec3<T> {
         let y0 = b.x;
         let y1 = b.y - self.l10 * y0;

@@ -32,8 +32,8 @@ impl<T: Scalar> SpatialInertia<T> {
     #[inline(always)]
     pub fn momentum(self, v: Motion<T>) -> Force<T> {
         Force {
-            ang: self.rotational * v.ang + self.first_moment.cross(v.lin),
-            lin: v.lin.scale(self.mass) - self.first_moment.cross(v.ang),
+            ang: self.first_moment.cross_plus(v.lin, self.rotational * v.ang),
+            lin: v.ang.cross_plus(self.first_moment, v.lin.scale(self.mass)),
         }
     }
 
@@ -78,6 +78,7 @@ impl<T: Scalar> SpatialInertia<T> {
 }
 
 /// `c·c 1 − c cᵀ`: what a unit mass at `c` adds to the rotational inertia.
+#[inline(always)]
 fn parallel_axis<T: Scalar>(c: Vec3<T>) -> SymMat3<T> {
     let s = c.dot(c);
     SymMat3::diagonal(s, s, s) - SymMat3::outer(c)

@@ -64,6 +64,7 @@ impl<T: Scalar> Mat3<T> {
 
     /// The rotation of the unit quaternion `(x, y, z, w)`, taking coordinates of the turned frame to coordinates of the
     /// frame it was turned from.
+    #[inline(always)]
     pub fn from_quaternion([x, y, z, w]: [T; 4]) -> Self {
         let two = T::from_f64(2.0);
         let one = T::one();
@@ -84,13 +85,21 @@ impl<T: Scalar> Mat3<T> {
     /// `Aᵀ b`, without forming the transpose.
     #[inline(always)]
     pub fn transpose_mul(self, b: Vec3<T>) -> Vec3<T> {
-        self.rows[0].scale(b.x) + self.rows[1].scale(b.y) + self.rows[2].scale(b.z)
+        self.rows[0].scale(b.x).plus_scaled(b.y, self.rows[1]).plus_scaled(b.z, self.rows[2])
+    }
+
+    /// `A b + c`.
+    #[inline(always)]
+    pub fn mul_plus(self, b: Vec3<T>, c: Vec3<T>) -> Vec3<T> {
+        let [x, y, z] = self.rows;
+        Vec3::new(x.dot_plus(b, c.x), y.dot_plus(b, c.y), z.dot_plus(b, c.z))
     }
 
     /// `s A`.
     #[inline(always)]
     pub fn scale(self, s: T) -> Self {
-        Self { rows: self.rows.map(|r| r.scale(s)) }
+        let [a, b, c] = self.rows;
+        Self::from_rows(a.scale(s), b.scale(s), c.scale(s))
     }
 
     /// The symmetric part `(A + Aᵀ) / 2` of a matrix that is symmetric but for rounding.
@@ -110,7 +119,8 @@ impl<T: Scalar> Mat3<T> {
     /// The same matrix with other numbers for entries.
     #[inline(always)]
     pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> Mat3<U> {
-        Mat3 { rows: self.rows.map(|r| r.map(&mut f)) }
+        let [a, b, c] = self.rows;
+        Mat3::from_rows(a.map(&mut f), b.map(&mut f), c.map(&mut f))
     }
 }
 
@@ -126,7 +136,8 @@ impl<T: Scalar> Mul for Mat3<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, b: Self) -> Self {
-        Self { rows: self.rows.map(|row| b.transpose_mul(row)) }
+        let [x, y, z] = self.rows;
+        Self::from_rows(b.transpose_mul(x), b.transpose_mul(y), b.transpose_mul(z))
     }
 }
 

@@ -73,6 +73,6 @@ impl<T: Scalar> ReleasedInertia<T> {
             Vec3::new(s * hyx, s * yy, s * yz),
         );
         let lin = x.alpha.x_back_sym(theta.z_back_sym(self.lin));
-        x.shifted(ArticulatedInertia { ang, mixed, lin })
+        ArticulatedInertia { ang, mixed, lin }.moved(x.offset)
     }
 }

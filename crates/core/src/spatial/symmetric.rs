@@ -63,18 +63,9 @@ impl<T: Scalar> SymMat3<T> {
         // Only the six entries on and above the diagonal of Eᵀ (A E).
         let [a, b, c] = (self.to_mat3() * e).rows;
         let [r0, r1, r2] = e.rows;
-        let entry = |i: Vec3<T>, j: Vec3<T>| i.dot(j);
-        let column = |x: T, y: T, z: T| Vec3::new(x, y, z);
-        let (e0, e1, e2) = (column(r0.x, r1.x, r2.x), column(r0.y, r1.y, r2.y), column(r0.z, r1.z, r2.z));
-        let (f0, f1, f2) = (column(a.x, b.x, c.x), column(a.y, b.y, c.y), column(a.z, b.z, c.z));
-        Self {
-            xx: entry(e0, f0),
-            yy: entry(e1, f1),
-            zz: entry(e2, f2),
-            xy: entry(e0, f1),
-            xz: entry(e0, f2),
-            yz: entry(e1, f2),
-        }
+        let (e0, e1, e2) = (Vec3::new(r0.x, r1.x, r2.x), Vec3::new(r0.y, r1.y, r2.y), Vec3::new(r0.z, r1.z, r2.z));
+        let (f0, f1, f2) = (Vec3::new(a.x, b.x, c.x), Vec3::new(a.y, b.y, c.y), Vec3::new(a.z, b.z, c.z));
+        Self { xx: e0.dot(f0), yy: e1.dot(f1), zz: e2.dot(f2), xy: e0.dot(f1), xz: e0.dot(f2), yz: e1.dot(f2) }
     }
 
     /// The same matrix with other numbers for entries.

@@ -1,6 +1,6 @@
 //! Rotations about a coordinate axis, which touch two coordinates of three.
 
-use super::{Mat3, SymMat3, Vec3};
+use super::{ArticulatedInertia, Force, Mat3, Motion, SpatialInertia, SymMat3, Transform, Vec3};
 use crate::Scalar;
 
 /// A rotation of the frame by an angle given by its sine and cosine, about the axis that the method names.
@@ -53,6 +53,34 @@ impl<T: Scalar> Turn<T> {
         Vec3::new(v.x, y, z)
     }
 
+    /// A motion in the axes turned about z.
+    #[inline(always)]
+    pub fn z_motion(self, m: Motion<T>) -> Motion<T> {
+        Motion { ang: self.z(m.ang), lin: self.z(m.lin) }
+    }
+
+    /// A force given in the axes turned about z, in those before.
+    #[inline(always)]
+    pub fn z_back_force(self, f: Force<T>) -> Force<T> {
+        Force { ang: self.z_back(f.ang), lin: self.z_back(f.lin) }
+    }
+
+    /// An inertia given in the axes turned about z, in those before.
+    #[inline(always)]
+    pub fn z_back_inertia(self, i: SpatialInertia<T>) -> SpatialInertia<T> {
+        SpatialInertia {
+            mass: i.mass,
+            first_moment: self.z_back(i.first_moment),
+            rotational: self.z_back_sym(i.rotational),
+        }
+    }
+
+    /// An articulated inertia given in the axes turned about z, in those before.
+    #[inline(always)]
+    pub fn z_back_articulated(self, i: ArticulatedInertia<T>) -> ArticulatedInertia<T> {
+        ArticulatedInertia { ang: self.z_back_sym(i.ang), mixed: self.z_back_mat(i.mixed), lin: self.z_back_sym(i.lin) }
+    }
+
     /// `Rzᵀ A Rz`.
     #[inline(always)]
     pub fn z_back_sym(self, a: SymMat3<T>) -> SymMat3<T> {
@@ -87,6 +115,20 @@ impl<T: Scalar> Turn<T> {
         let (xy, xz) = self.pair_back(a.y, a.z);
         let (yx, zx) = self.pair_back(b.x, c.x);
         Mat3::from_rows(Vec3::new(a.x, xy, xz), Vec3::new(yx, yy, yz), Vec3::new(zx, zy, zz))
+    }
+
+    /// A transform followed by this turn about z: `Rz X`.
+    #[inline(always)]
+    pub fn z_after(self, x: Transform<T>) -> Transform<T> {
+        let [a, b, c] = x.rot.rows;
+        let (a, b) = self.pair_of(a, b);
+        Transform { rot: Mat3::from_rows(a, b, c), pos: x.pos }
+    }
+
+    /// [`Turn::pair`] of all coordinates of two rows.
+    #[inline(always)]
+    pub(super) fn pair_of(self, a: Vec3<T>, b: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
+        (b.scale(self.sin).plus_scaled(self.cos, a), b.scale(self.cos).plus_scaled(-self.sin, a))
     }
 
     /// `R [a; b]` in the plane, `R = [[c, s], [−s, c]]`.

@@ -41,6 +41,12 @@ impl<T: Scalar> Vec3<T> {
         self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
     }
 
+    /// `a · b + c`.
+    #[inline(always)]
+    pub fn dot_plus(self, b: Self, c: T) -> T {
+        self.x.mul_add(b.x, self.y.mul_add(b.y, self.z.mul_add(b.z, c)))
+    }
+
     /// Vector product `a × b`.
     #[inline(always)]
     pub fn cross(self, b: Self) -> Self {
