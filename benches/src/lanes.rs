@@ -1,6 +1,6 @@
 //! Numbers that hold one state or several side by side.
 
-use gyroflex::Scalar;
+use gyroflex::{Lanes, Scalar};
 
 /// A scalar that takes its lanes from as many states.
 pub trait Lane: Scalar + 'static {
@@ -30,3 +30,20 @@ macro_rules! one_state {
     )*};
 }
 one_state!(f32, f64);
+
+macro_rules! states_side_by_side {
+    ($($float:ident),*) => {$(
+        impl<const N: usize> Lane for Lanes<$float, N> {
+            const WIDTH: usize = N;
+
+            fn gather(states: impl Fn(usize) -> f64) -> Self {
+                Self(std::array::from_fn(|i| states(i) as $float))
+            }
+
+            fn lane(self, i: usize) -> f64 {
+                f64::from(self.0[i])
+            }
+        }
+    )*};
+}
+states_side_by_side!(f32, f64);

@@ -29,15 +29,15 @@ impl Spec {
     }
 
     /// Lowers it for one of the four models. The records stay for the life of the program, as an arm's do in a controller.
-    pub fn lower<T: Scalar>(&self, fidelity: Fidelity) -> Model<'static, T> {
+    pub fn lower<P: Scalar>(&self, fidelity: Fidelity) -> Model<'static, P> {
         let Self { bodies, spring_tables, gravity } = self;
         let spec = RobotSpec { bodies, spring_tables, gravity: *gravity };
         let mut records = vec![Body::empty(); bodies.len()];
         let mut knots = vec![Knot::EMPTY; spec.knots_needed()];
         spec.lower(fidelity, &mut records, &mut knots).unwrap_or_else(|e| panic!("{e}"));
-        let records: Vec<Body<T>> = records.iter().map(Body::cast).collect();
-        let knots: Vec<Knot<T>> = knots.iter().map(Knot::cast).collect();
-        Model::new(records.leak(), knots.leak(), gravity.map(T::from_f64))
+        let records: Vec<Body<P>> = records.iter().map(Body::cast).collect();
+        let knots: Vec<Knot<P>> = knots.iter().map(Knot::cast).collect();
+        Model::new(records.leak(), knots.leak(), gravity.map(P::from_f64))
     }
 }
 
@@ -71,8 +71,8 @@ impl Algorithm {
 
 /// A robot in one model and scalar, ready to be called.
 #[derive(Debug)]
-pub struct Workload<T: 'static> {
-    model: Model<'static, T>,
+pub struct Workload<T: Scalar + 'static> {
+    model: Model<'static, T::Param>,
     states: Vec<[Vec<T>; 5]>,
     aba: Vec<AbaScratch<T>>,
     rnea: Vec<RneaScratch<T>>,
@@ -82,10 +82,10 @@ pub struct Workload<T: 'static> {
     poses: Vec<Transform<T>>,
 }
 
-impl<T: Scalar<Param = T> + 'static> Workload<T> {
+impl<T: Scalar + 'static> Workload<T> {
     /// Prepares a robot for one of the four models.
     pub fn new(spec: &Spec, fidelity: Fidelity) -> Self {
-        let model = spec.lower(fidelity);
+        let model = spec.lower::<T::Param>(fidelity);
         let (n, nq, nv) = (model.bodies().len(), model.nq(), model.nv());
         let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
         let mut uniform = move || {

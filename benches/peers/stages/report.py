@@ -16,6 +16,9 @@ ALGORITHMS = {"aba": "forward dynamics", "rnea": "inverse dynamics", "crba": "in
 PEERS = {"Pinocchio": "pinocchio", "MuJoCo": "mujoco", "dynibo": "rust-peers", "rapier3d": "rust-peers"}
 BUILDS = {"gyroflex": "default build", "gyroflex-x86-64-v3": "x86-64-v3 build", "gyroflex-native": "native build"}
 
+# Of gyroflex's program: one state at a time, or several side by side.
+WAYS = ["", "8 lanes", "16 lanes of f32"]
+
 
 def said(*command):
     try:
@@ -103,6 +106,24 @@ def per_link(entries):
     return table(["ns per link", *(f"{n} links" for n in sizes)], rows)
 
 
+def throughput(entries):
+    """Million states a second on one core: one at a time, and side by side where there is such a thing."""
+    rows = []
+    for algorithm in ("aba", "rnea"):
+        for robot in ROBOTS:
+            group = [e for e in entries if family(e["row"]) == f"{robot}/{algorithm}"]
+            cells = [f"{ALGORITHMS[algorithm]} · {title(robot)}"]
+            for program in ("gyroflex", "gyroflex-native"):
+                for way in WAYS:
+                    found = next(e for e in group if e["program"] == program and e["row"].partition(":")[2] == way)
+                    cells.append(f"{1e3 / min(found['fastest']):.2f}")
+            for peer in ("Pinocchio", "MuJoCo", "dynibo"):
+                cells.append(f"{1e3 / min(min(e['fastest']) for e in group if of_peer(peer, e)):.2f}")
+            rows.append(cells)
+    ours = [f"gyroflex, {BUILDS[program]}, {way or 'one state'}" for program in ("gyroflex", "gyroflex-native") for way in WAYS]
+    return table(["million states a second", *ours, "Pinocchio", "MuJoCo", "dynibo"], rows)
+
+
 def machine():
     with open("/proc/cpuinfo") as file:
         fields = dict(re.findall(r"^(model name|cpu family|model|stepping)\s*: (.*)$", file.read(), re.M))
@@ -143,7 +164,9 @@ def report(_):
     parts = [circumstances(found["about"], entries),
              "Nanoseconds per call, the fastest batch. In brackets how many times as long as gyroflex's default build, "
              "the median over the rounds; each peer with the fastest of its builds and ways.", summary,
-             "Every build and way: fastest batch (median batch)" + (" · instructions per call" if counts else "") + "."]
+             "Throughput of one core. Lanes are states computed side by side by the same source; the others have no such thing.",
+             throughput(entries),
+             "Every build and way, with lanes per state: fastest batch (median batch)" + (" · instructions per call" if counts else "") + "."]
     parts += [details(entries, algorithm, counts) for algorithm in ALGORITHMS]
     parts += ["Chains and binary trees of any size, every joint with a rotor behind an elastic transmission, gyroflex alone:",
               per_link(entries)]

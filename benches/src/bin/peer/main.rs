@@ -3,6 +3,7 @@
 mod links;
 mod robot;
 
+use gyroflex::Lanes;
 use gyroflex_benches::Lane;
 use gyroflex_benches::peers::Worker;
 use robot::Robot;
@@ -11,6 +12,8 @@ use std::rc::Rc;
 
 /// What the light fast rotors of bodies of their own leave of the expected values, in multiples of the largest number.
 const TOLERANCE: f64 = 1e-10;
+/// Of `f32`: a spring's deflection of a thousandth is the difference of angles of three radians, rounded to 2e-7.
+const SINGLE: f64 = 1e-2;
 
 /// Forward and inverse dynamics of one robot, as many states at a time as the number holds.
 fn add<T: Lane>(worker: &mut Worker, name: &str, variant: &str, tolerance: f64) -> Rc<RefCell<Robot<T>>> {
@@ -30,6 +33,8 @@ fn main() {
         if robot.borrow().is_rigid() {
             worker.add(format!("{name}/fk"), TOLERANCE, &robot, Robot::poses, Robot::pose_error);
         }
+        add::<Lanes<f64, 8>>(&mut worker, &name, ":8 lanes", TOLERANCE);
+        add::<Lanes<f32, 16>>(&mut worker, &name, ":16 lanes of f32", SINGLE);
     }
     links::add(&mut worker);
     worker.serve();
