@@ -1,5 +1,6 @@
 //! The core's algorithms on owned vectors, with scratch as dirty as asked for.
 
+use gyroflex::Scalar;
 use gyroflex::dynamics::{
     AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, JointSpaceScratch,
     Power, RneaScratch, State, aba, coupling, crba, energy, forward_dynamics, forward_in_joint_space, joint_space_len,
@@ -14,8 +15,8 @@ use gyroflex_testkit::{Lowered, State as Point};
 
 /// A robot lowered to one model and scalar; states and results are `f64` at the border.
 #[derive(Clone, Debug)]
-pub struct Core<T> {
-    lowered: Lowered<T>,
+pub struct Core<T: Real> {
+    lowered: Lowered<T::Param>,
     dirty: bool,
 }
 
@@ -34,7 +35,7 @@ impl<T: Real> Core<T> {
     }
 
     /// The view the algorithms take.
-    pub fn model(&self) -> Model<'_, T> {
+    pub fn model(&self) -> Model<'_, T::Param> {
         self.lowered.view()
     }
 
@@ -121,7 +122,7 @@ impl<T: Real> Core<T> {
     fn write_matrix(
         &self,
         s: &Point,
-        run: impl Fn(&Model<'_, T>, &[T], &mut [CrbaScratch<T>], &mut [T]) -> Result<(), SizeError>,
+        run: impl Fn(&Model<'_, T::Param>, &[T], &mut [CrbaScratch<T>], &mut [T]) -> Result<(), SizeError>,
     ) -> Vec<f64> {
         let model = self.model();
         let mut scratch = vec![CrbaScratch::new(); model.bodies().len()];
@@ -132,9 +133,9 @@ impl<T: Real> Core<T> {
 
     /// The diagonal of `B`.
     pub fn reflected_inertia(&self) -> Vec<f64> {
-        let mut b = vec![nan(); self.model().nv()];
+        let mut b = vec![T::Param::from_f64(f64::NAN); self.model().nv()];
         reflected_inertia(&self.model(), &mut b).expect("slices fit the model");
-        double(&b)
+        b.into_iter().map(|x| T::from_param(x).to_f64()).collect()
     }
 
     /// `energy`.
@@ -142,7 +143,7 @@ impl<T: Real> Core<T> {
         let model = self.model();
         let mut scratch = vec![(Transform::identity(), Motion::zero()); model.bodies().len()];
         let e = self.call(s, |x| energy(&model, x.state(), &mut scratch));
-        Energy { kinetic: e.kinetic.into(), gravity: e.gravity.into(), elastic: e.elastic.into() }
+        Energy { kinetic: e.kinetic.to_f64(), gravity: e.gravity.to_f64(), elastic: e.elastic.to_f64() }
     }
 
     /// `power`.
@@ -150,7 +151,7 @@ impl<T: Real> Core<T> {
         let model = self.model();
         let mut scratch = vec![(Transform::identity(), Motion::zero()); model.bodies().len()];
         let p = self.call(s, |x| power(&model, x.state(), &x.tau, x.external(), &mut scratch));
-        Power { supplied: p.supplied.into(), dissipated: p.dissipated.into() }
+        Power { supplied: p.supplied.to_f64(), dissipated: p.dissipated.to_f64() }
     }
 
     fn call<R>(&self, s: &Point, mut run: impl FnMut(&Inputs<T>) -> Result<R, SizeError>) -> R {
@@ -224,5 +225,5 @@ fn cast<T: Real>(x: &[f64]) -> Vec<T> {
 }
 
 fn double<T: Real>(x: &[T]) -> Vec<f64> {
-    x.iter().map(|x| (*x).into()).collect()
+    x.iter().map(|x| x.to_f64()).collect()
 }

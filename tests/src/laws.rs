@@ -11,7 +11,7 @@ use crate::Core;
 
 /// One robot in one model and scalar at one state: what a law is about.
 #[derive(Debug)]
-pub struct Trial<'a, T> {
+pub struct Trial<'a, T: Real> {
     /// The robot.
     pub robot: &'a RandomRobot,
     /// The model.

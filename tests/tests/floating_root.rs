@@ -8,7 +8,7 @@ use gyroflex_tests::{Trial, for_trials};
 use nalgebra::{Matrix3, Matrix4, Quaternion, UnitQuaternion, Vector3};
 
 /// The group's operations in `f64` vectors.
-struct Group<'t, 'r, T>(&'t Trial<'r, T>);
+struct Group<'t, 'r, T: Real>(&'t Trial<'r, T>);
 
 impl<T: Real> Group<'_, '_, T> {
     fn integrate(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
@@ -26,7 +26,7 @@ impl<T: Real> Group<'_, '_, T> {
     fn write<E: core::fmt::Debug>(&self, len: usize, run: impl FnOnce(&mut [T]) -> Result<(), E>) -> Vec<f64> {
         let mut out = vec![T::from_f64(f64::NAN); len];
         run(&mut out).expect("slices fit the model");
-        out.into_iter().map(Into::into).collect()
+        out.into_iter().map(Real::to_f64).collect()
     }
 }
 

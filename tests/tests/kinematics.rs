@@ -45,7 +45,7 @@ fn equal_jacobians<T: Real>(t: &Trial<'_, T>, body: usize, poses: &[Transform<T>
     for (axes, into) in [(Axes::World, Matrix3::identity()), (Axes::Local, turn.transpose())] {
         let mut got = vec![T::zero(); 6 * nv];
         jacobian(&model, poses, frame, axes, &mut got).expect("slices fit the model");
-        let got: Vec<f64> = got.into_iter().map(Into::into).collect();
+        let got: Vec<f64> = got.into_iter().map(Real::to_f64).collect();
         let mut want = moved.clone();
         want.rows_mut(0, 3).copy_from(&(into * moved.rows(0, 3)));
         want.rows_mut(3, 3).copy_from(&(into * moved.rows(3, 3)));
@@ -58,7 +58,7 @@ fn to_link(link: &LinkMotion, v: &Vector3<f64>) -> Vector3<f64> {
 }
 
 fn double<T: Real>(v: Vec3<T>) -> [f64; 3] {
-    v.to_array().map(Into::into)
+    v.to_array().map(Real::to_f64)
 }
 
 #[test]

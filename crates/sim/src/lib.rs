@@ -1,5 +1,6 @@
 //! From files to motion: URDF and YAML in, simulation, records out.
 
+pub mod batch;
 pub mod bench;
 pub mod controller;
 pub mod coordinates;

@@ -1,17 +1,22 @@
 //! How equal is equal.
 
-use gyroflex::Scalar;
+use gyroflex::{Lanes, Scalar};
 
 /// A scalar the laws run in.
-pub trait Real: Scalar<Param = Self> + Into<f64> {
-    /// `f32` or `f64`, for messages.
+pub trait Real: Scalar {
+    /// For messages.
     const NAME: &'static str;
+    /// The number as the oracles have it.
+    fn to_f64(self) -> f64;
     /// The part of a pair of tolerances meant for this scalar.
     fn pick(pair: Tolerance) -> f64;
 }
 
 impl Real for f64 {
     const NAME: &'static str = "f64";
+    fn to_f64(self) -> f64 {
+        self
+    }
     fn pick(pair: Tolerance) -> f64 {
         pair.double
     }
@@ -19,8 +24,26 @@ impl Real for f64 {
 
 impl Real for f32 {
     const NAME: &'static str = "f32";
+    fn to_f64(self) -> f64 {
+        self.into()
+    }
     fn pick(pair: Tolerance) -> f64 {
         pair.single
+    }
+}
+
+/// The same state in all lanes.
+impl Real for Lanes<f64, 8> {
+    const NAME: &'static str = "8 lanes of f64";
+    /// # Panics
+    /// If the lanes differ.
+    fn to_f64(self) -> f64 {
+        let [first, rest @ ..] = self.0;
+        assert!(rest.iter().all(|x| x.to_bits() == first.to_bits()), "lanes differ: {:?}", self.0);
+        first
+    }
+    fn pick(pair: Tolerance) -> f64 {
+        pair.double
     }
 }
 

@@ -14,65 +14,13 @@
 //!
 //! Cost O(n). No allocation, no panic, no branch on values.
 
-use super::drive_torque::{JointState, drives};
+use super::drive_torque::{JointState, drives, rotor_acceleration, rotor_couple, rotor_torque};
 use super::tree::{RootMotion, Tree, first, store_first, turns};
-use super::{External, Forward, State};
+use super::{AbaScratch, External, Forward, State};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
-use crate::model::{Body, Drive, JointKind, Model, SizeError};
-use crate::spatial::{ArticulatedInertia, Force, Motion, SpatialInertia, Turn, Vec3};
-
-/// What the algorithm keeps for one body during a call.
-#[derive(Clone, Copy, Debug)]
-pub struct AbaScratch<T> {
-    /// Sine and cosine of the joint's angle.
-    theta: Turn<T>,
-    /// `ω`, of a body that others than the next refer to.
-    omega: Vec3<T>,
-    /// `c`: acceleration due to velocities alone.
-    c: Motion<T>,
-    /// `pᴬ`.
-    p: Force<T>,
-    /// `U = Iᴬ S`.
-    u_cap: Force<T>,
-    /// `1 / d`, `d` the joint's apparent inertia.
-    d_inv: T,
-    /// Generalised force at the joint that is left to accelerate it.
-    u: T,
-    /// Net reflected torque on the joint's elastic rotor.
-    on_rotor: T,
-    /// Couple of the joint's rotor on its carrier.
-    couple: Vec3<T>,
-    /// `Iᴬ` so far, of a body that others than the next hang on.
-    ia: ArticulatedInertia<T>,
-    /// Acceleration, gravity included, of a body that others than the next refer to.
-    a: Motion<T>,
-}
-
-impl<T: Scalar> AbaScratch<T> {
-    /// Scratch with any content.
-    pub fn new() -> Self {
-        Self {
-            theta: Turn::none(),
-            omega: Vec3::zero(),
-            c: Motion::zero(),
-            p: Force::zero(),
-            u_cap: Force::zero(),
-            d_inv: T::zero(),
-            u: T::zero(),
-            on_rotor: T::zero(),
-            couple: Vec3::zero(),
-            ia: ArticulatedInertia::zero(),
-            a: Motion::zero(),
-        }
-    }
-}
-
-impl<T: Scalar> Default for AbaScratch<T> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+use crate::model::{Body, JointKind, Model, SizeError};
+use crate::spatial::{ArticulatedInertia, Force, Motion, SpatialInertia, Vec3};
 
 /// Accelerations of all joints and motors from state, motor torques and external loads.
 ///
@@ -189,22 +137,14 @@ impl<T: Scalar> Aba<'_, '_, T> {
             let load = tau_ext.map_or(F::zero(), |tau| F::load(tau[i]));
             let known = drives(body, at, F::load(motor[i]), load, model.knots);
 
-            // The rotor's couple on its carrier: elastic ω × h n + (τ − τ_J)/N n, rigid ω × N J q̇ n
-            if let Some(Drive { rotor, elastic }) = &body.drive {
-                let beside = rotor.mount == body.parent;
-                let omega = if beside { parent } else { omega_at(rotor.mount, scratch) };
-                let (h, h_dot) = match elastic {
-                    Some(_) => {
-                        let h_dot = known.on_rotor * F::from_param(rotor.inv_gear_ratio);
-                        (rotor.axial_momentum(at.thetad, omega), h_dot)
-                    }
-                    None => (rotor.axial_momentum(at.qd, Vec3::zero()), F::zero()),
-                };
-                let axis = rotor.axis_in::<F>();
-                let couple = omega.cross_plus(axis.scale(h), axis.scale(h_dot));
+            // The rotor's couple on its carrier
+            if let Some(drive) = &body.drive {
+                let beside = drive.rotor.mount == body.parent;
+                let omega = if beside { parent } else { omega_at(drive.rotor.mount, scratch) };
+                let couple = rotor_couple(drive, at, omega, known.on_rotor);
                 scratch[i].couple = couple.map(F::store);
                 if !beside {
-                    match tree.joint(rotor.mount).and_then(|b| scratch.get_mut(b)) {
+                    match tree.joint(drive.rotor.mount).and_then(|b| scratch.get_mut(b)) {
                         Some(carrier) => carrier.p.ang = (carrier.p.ang.map(F::load) + couple).map(F::store),
                         None => base_p.ang += couple,
                     }
@@ -318,17 +258,15 @@ impl<T: Scalar> Aba<'_, '_, T> {
             let a = joint.moved(moved + s.c.map(F::load), acceleration);
             qdd[i] = acceleration.store();
 
-            // Elastic rotors θ̈ = (τ − τ_J)/B − (n·α)/N, rigid ones τ_J = τ − B q̈ − N J n·α
+            // The rotor follows: an elastic one accelerates by itself, a rigid one takes its part of the torque
             let mut motor_acceleration = acceleration;
-            if let Some(Drive { rotor, elastic }) = &body.drive {
-                let carrier = if rotor.mount == body.parent { parent } else { accel_at(rotor.mount, scratch) };
-                if elastic.is_some() {
-                    let own = F::load(s.on_rotor) * F::from_param(rotor.inv_reflected_inertia);
-                    let turning = rotor.axis_in().dot(carrier.ang);
-                    motor_acceleration = own - turning * F::from_param(rotor.inv_gear_ratio);
+            if let Some(drive) = &body.drive {
+                let mount = drive.rotor.mount;
+                let carrier = if mount == body.parent { parent } else { accel_at(mount, scratch) };
+                if drive.elastic.is_some() {
+                    motor_acceleration = rotor_acceleration(&drive.rotor, F::load(s.on_rotor), carrier.ang);
                 } else {
-                    let b = F::from_param(rotor.reflected_inertia);
-                    let taken = b.mul_add(acceleration, rotor.coupling().dot(carrier.ang));
+                    let taken = rotor_torque(&drive.rotor, acceleration, carrier.ang);
                     tau_j[i] = (F::load(tau_j[i]) - taken).store();
                 }
             }

@@ -1,7 +1,8 @@
 //! Torques of one joint's transmission, rotor and friction: all that a drive adds to a joint.
 
 use crate::Scalar;
-use crate::model::{Body, Elastic, Knot, Rotor};
+use crate::model::{Body, Drive, Elastic, Knot, Rotor};
+use crate::spatial::Vec3;
 
 /// Coordinates of one joint of one degree of freedom and of its motor, reflected.
 #[derive(Clone, Copy, Debug)]
@@ -85,4 +86,35 @@ pub(super) fn drives<T: Scalar>(
             Drives { on_link: net + load, on_rotor: T::zero(), tau_j: net }
         }
     }
+}
+
+/// Couple that a rotor needs of its carrier, of angular velocity `omega`, as far as the state alone says: elastic
+/// `ω × h n + (τ − τ_J)/N n`, rigid `ω × N J q̇ n`, in the carrier's axes.
+#[inline(always)]
+pub(super) fn rotor_couple<T: Scalar>(
+    drive: &Drive<T::Param>,
+    at: JointState<T>,
+    omega: Vec3<T>,
+    on_rotor: T,
+) -> Vec3<T> {
+    let rotor = &drive.rotor;
+    let (h, h_dot) = match drive.elastic {
+        Some(_) => (rotor.axial_momentum(at.thetad, omega), on_rotor * T::from_param(rotor.inv_gear_ratio)),
+        None => (rotor.axial_momentum(at.qd, Vec3::zero()), T::zero()),
+    };
+    let axis = rotor.axis_in();
+    omega.cross_plus(axis.scale(h), axis.scale(h_dot))
+}
+
+/// Acceleration of an elastic rotor, reflected: `θ̈ = (τ − τ_J)/B − (n·α)/N`, `alpha` that of its carrier.
+#[inline(always)]
+pub(super) fn rotor_acceleration<T: Scalar>(rotor: &Rotor<T::Param>, on_rotor: T, alpha: Vec3<T>) -> T {
+    let own = on_rotor * T::from_param(rotor.inv_reflected_inertia);
+    own - rotor.axis_in().dot(alpha) * T::from_param(rotor.inv_gear_ratio)
+}
+
+/// Torque that a rigidly geared rotor takes, reflected: `B q̈ + N J n·α`, `alpha` that of its carrier.
+#[inline(always)]
+pub(super) fn rotor_torque<T: Scalar>(rotor: &Rotor<T::Param>, qdd: T, alpha: Vec3<T>) -> T {
+    T::from_param(rotor.reflected_inertia).mul_add(qdd, rotor.coupling().dot(alpha))
 }

@@ -4,7 +4,7 @@
 //! vanishes unless one of the joints supports the other, because a carrier is an ancestor of its joint; so the
 //! factorisation `M = Lᵀ L` fills in nothing (RBDA §6.5) and costs O(n·depth²).
 
-use super::drive_torque::{JointState, drives};
+use super::drive_torque::{JointState, drives, rotor_acceleration, rotor_couple, rotor_torque};
 use super::kinematics::{transform, velocity};
 use super::{External, Forward, State, check_external, check_scratch, check_state};
 use crate::Scalar;
@@ -80,7 +80,7 @@ pub fn forward_in_joint_space<T: Scalar>(
     matrix_and_load(model, tau, &ext, scratch, matrix, qdd);
     solve_by_branches(model, matrix, qdd);
 
-    // Accelerations of the links, and of the rotors: elastic θ̈ = (τ − τ_J)/B − (n·α)/N, rigid τ_J = τ − B q̈ − N J n·α
+    // Accelerations of the links, and of the rotors.
     for (i, body) in model.bodies.iter().enumerate() {
         let a_p = body.parent().map_or(a_world, |p| scratch[p].a);
         let k = body.v_index();
@@ -96,10 +96,9 @@ pub fn forward_in_joint_space<T: Scalar>(
         let Some(drive) = &body.drive else { continue };
         let alpha = drive.rotor.mount().map_or(Vec3::zero(), |m| scratch[m].a.ang);
         if drive.elastic.is_some() {
-            let own = scratch[i].on_rotor * T::from_param(drive.rotor.inv_reflected_inertia);
-            thetadd[k] = own - drive.rotor.axis_in().dot(alpha) * T::from_param(drive.rotor.inv_gear_ratio);
+            thetadd[k] = rotor_acceleration(&drive.rotor, scratch[i].on_rotor, alpha);
         } else {
-            tau_j[k] -= T::from_param(drive.rotor.reflected_inertia) * qdd[k] + drive.rotor.coupling().dot(alpha);
+            tau_j[k] -= rotor_torque(&drive.rotor, qdd[k], alpha);
         }
     }
     Ok(())
@@ -139,19 +138,12 @@ fn outward<T: Scalar>(
         let known = drives(body, at, tau[k], ext.tau.get(k).copied().unwrap_or(zero), model.knots);
         (scratch[i].u, scratch[i].on_rotor, tau_j[k]) = (known.on_link, known.on_rotor, known.tau_j);
 
-        // The rotor's couple on its carrier: elastic ω × h n + (τ − τ_J)/N n, rigid ω × N J q̇ n
+        // The rotor's couple on its carrier
         if let Some(drive) = &body.drive
             && let Some(m) = drive.rotor.mount()
         {
-            let (rotor, omega) = (&drive.rotor, scratch[m].v.ang);
-            let (h, h_dot) = match drive.elastic {
-                Some(_) => {
-                    (rotor.axial_momentum(at.thetad, omega), known.on_rotor * T::from_param(rotor.inv_gear_ratio))
-                }
-                None => (rotor.axial_momentum(at.qd, Vec3::zero()), zero),
-            };
-            let axis = rotor.axis_in();
-            scratch[m].f.ang += omega.cross_plus(axis.scale(h), axis.scale(h_dot));
+            let couple = rotor_couple(drive, at, scratch[m].v.ang, known.on_rotor);
+            scratch[m].f.ang += couple;
         }
     }
 }

@@ -6,16 +6,19 @@
 //! with an elastic transmission; everywhere else the motor turns with the joint.
 
 mod aba;
+mod aba_scratch;
 mod crba;
 mod drive_torque;
 mod energy;
 mod forward;
 mod joint_space;
 mod kinematics;
+mod moving;
 mod rnea;
 mod tree;
 
-pub use aba::{AbaScratch, aba};
+pub use aba::aba;
+pub use aba_scratch::AbaScratch;
 pub use crba::{CrbaScratch, coupling, crba, reflected_inertia};
 pub use energy::{Energy, Power, energy, power};
 pub use forward::{ForwardScratch, forward_dynamics, joint_space_len, matrix_len};

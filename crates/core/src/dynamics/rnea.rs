@@ -2,8 +2,8 @@
 //! classical accelerations.
 //!
 //! With the acceleration `a` of a body's origin as a point in space, Newton's and Euler's equations about that origin need
-//! no linear velocity: `f = m a + Ω h`, `n = I α + ω × I ω + h × a`, where `h = m c` and `Ω = α× + ω× ω×` is the
-//! angular acceleration tensor (Balafoutis & Patel 1991, §4.3).
+//! no linear velocity: `f = m a + α × h + ω × (ω × h)`, `n = I α + ω × I ω + h × a`, where `h = m c` (Craig,
+//! *Introduction to Robotics*, eq. 6.45–6.53, about the frame's origin).
 //!
 //! A rotor's absolute axial momentum is `h = J (N θ̇ + n·ω)`. Its carrier must supply the couple `ḣ n + ω × h n`, its motor
 //! the reflected torque `N ḣ = B θ̈ + N J n·α` (PHYSICS §3). An elastic rotor's `J n nᵀ` is not part of the carrier's inertia,
@@ -12,7 +12,8 @@
 //! Cost O(n). No allocation, no panic, no branch on values.
 
 use super::drive_torque::transmission_error;
-use super::tree::{Moving, RootMotion, Tree, first, store_first, turns};
+use super::moving::Moving;
+use super::tree::{RootMotion, Tree, first, store_first, turns};
 use super::{Acceleration, External, Inverse, State};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
@@ -143,7 +144,7 @@ impl<T: Scalar> Rnea<'_, '_, T> {
             let x = body.across_as(kind(body), scratch[i].theta.map(F::load), q);
             let moving = turned.across(&x, kind(body), qd, qdd);
 
-            // f = m a + Ω h − f_ext,   n = I α + ω × I ω + h × a − n_ext
+            // f = m a + α × h + ω × (ω × h) − f_ext,   n = I α + ω × I ω + h × a − n_ext
             let mut f = moving.force_on(body.inertia.map(F::from_param));
             if let Some(wrenches) = wrenches {
                 f -= body.frame.map(F::from_param).inv_force(wrenches[i].map(F::load));

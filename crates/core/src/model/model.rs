@@ -114,8 +114,12 @@ impl fmt::Display for SizeError {
 impl core::error::Error for SizeError {}
 
 impl SizeError {
+    /// An error unless the lengths are the same.
+    ///
+    /// # Errors
+    /// Names the argument.
     #[inline]
-    pub(crate) fn check(argument: &'static str, given: usize, expected: usize) -> Result<(), Self> {
+    pub fn check(argument: &'static str, given: usize, expected: usize) -> Result<(), Self> {
         if given == expected { Ok(()) } else { Err(Self { argument, expected, given }) }
     }
 }
