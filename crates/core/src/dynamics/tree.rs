@@ -89,12 +89,13 @@ impl<'a, P: Scalar> Tree<'a, P> {
     }
 }
 
-/// What follows the first `lead` of `lead + n` entries.
+/// What follows the first `lead` of `lead + n` entries, cut to `n`: an index below `n` then needs no check.
 #[inline(always)]
 fn rest<'s, X>(argument: &'static str, all: &'s [X], lead: usize, n: usize) -> Result<&'s [X], SizeError> {
-    match all.get(lead..) {
-        Some(rest) if rest.len() == n => Ok(rest),
-        _ => Err(SizeError { argument, expected: lead + n, given: all.len() }),
+    let given = all.len();
+    match all.get(lead..).and_then(|rest| rest.get(..n)) {
+        Some(rest) if given - lead == n => Ok(rest),
+        _ => Err(SizeError { argument, expected: lead + n, given }),
     }
 }
 
@@ -107,9 +108,11 @@ fn split<'s, X>(
     n: usize,
 ) -> Result<(&'s mut [X], &'s mut [X]), SizeError> {
     let given = all.len();
-    match all.split_at_mut_checked(lead) {
-        Some((root, rest)) if rest.len() == n => Ok((root, rest)),
-        _ => Err(SizeError { argument, expected: lead + n, given }),
+    let error = SizeError { argument, expected: lead + n, given };
+    let (root, rest) = all.split_at_mut_checked(lead).ok_or(error)?;
+    match rest.get_mut(..n) {
+        Some(rest) if given - lead == n => Ok((root, rest)),
+        _ => Err(error),
     }
 }
 
