@@ -31,7 +31,7 @@ class Program:
         for line in self.process.stdout:
             if line.strip() == "ready":
                 return
-            _, row, error = line.split()
+            row, _, error = line.removeprefix("row ").rpartition(" ")
             self.errors[row] = float(error)
         sys.exit(f"{name} stopped at its checks, see above; nothing was measured")
 
