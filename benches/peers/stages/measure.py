@@ -9,7 +9,7 @@ import time
 from collections import defaultdict
 from datetime import datetime, timezone
 
-from build import BIN, HOME, MODELS, programs
+from build import BIN, HOME, MODELS, REPOSITORY, programs
 
 ROBOTS = ["panda", "panda_flex", "ur5", "ur5_flex", "talos", "talos_flex"]
 RESULTS = HOME / "results.json"
@@ -53,6 +53,14 @@ def family(row):
     return row.split(":")[0]
 
 
+def library():
+    """The commit that last changed gyroflex itself, and whether its files differ from it."""
+    git = ["git", "-C", str(REPOSITORY)]
+    commit = subprocess.run([*git, "log", "-1", "--format=%h", "--", "crates"], capture_output=True, text=True).stdout.strip()
+    same = subprocess.run([*git, "diff", "--quiet", "HEAD", "--", "crates"]).returncode == 0
+    return commit + ("" if same else " with changes")
+
+
 def measure(options):
     started = datetime.now(timezone.utc)
     workers = [Program(name, options.core) for name, _ in programs()]
@@ -80,7 +88,7 @@ def measure(options):
     rows = [{"program": program, "row": row, "error": errors[program, row],
              "fastest": [round(b[0], 2) for b in found], "middle": [round(b[1], 2) for b in found]}
             for (program, row), found in batches.items()]
-    about = {"started": started.strftime("%Y-%m-%d %H:%M UTC"), "rounds": options.rounds, "core": options.core,
+    about = {"library": library(), "started": started.strftime("%Y-%m-%d %H:%M UTC"), "rounds": options.rounds, "core": options.core,
              "load": [round(load, 2), round(os.getloadavg()[0], 2)],
              "command": "benches/peers/run measure" + (f" --rounds {options.rounds}" if options.rounds != 100 else "")}
     RESULTS.write_text(json.dumps({"about": about, "rows": rows}))

@@ -132,14 +132,12 @@ def machine():
 
 def circumstances(about, entries):
     crates = re.findall(r'name = "(dynibo|rapier3d-f64)"\nversion = "(.*)"', (HERE / "rust/Cargo.lock").read_text())
-    commit = said("git", "rev-parse", "--short", "HEAD")
-    changed = said("git", "status", "--porcelain", "--untracked-files=no") != "unknown"
     errors = {peer: max((e["error"] for e in entries if of_peer(peer, e)), default=0) for peer in PEERS}
     for name, single in (("gyroflex in f32", True), ("gyroflex", False)):
         mine = (e["error"] for e in entries if e["program"] in BUILDS and e["row"].endswith("f32") == single)
         errors = {name: max(mine), **errors}
     return "\n".join([
-        f"* Measured {about['started']} with `{about['command']}` at commit {commit}{' with changes' if changed else ''}, "
+        f"* Measured {about['started']} with `{about['command']}` on the library of commit {about['library']}, "
         f"{about['rounds']} rounds, all programs pinned to core {about['core']}, load average {about['load'][0]} before and "
         f"{about['load'][1]} after.",
         f"* Machine: {machine()}, {platform.system()} {platform.release()}.",
