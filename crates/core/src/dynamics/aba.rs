@@ -96,15 +96,17 @@ impl<T: Scalar> Aba<'_, '_, T> {
         let omega_at = |b: Option<u16>, scratch: &[AbaScratch<T>]| {
             tree.joint(b).and_then(|b| scratch.get(b)).map_or(base_omega, |s| s.omega.map(F::load))
         };
+        // Some compilers do not see that these have `n` entries; to ask costs less than to panic.
+        let at_joint = |all: &[T], i: usize| all.get(i).map_or(F::zero(), |x| F::load(*x));
         let mut previous = base_omega;
         for i in 0..n {
             let body = &joints[i];
             let joint = kind(body);
             let at = JointState {
                 q: F::load(q[i]),
-                qd: F::load(qd[i]),
-                theta: F::load(theta[i]),
-                thetad: F::load(thetad[i]),
+                qd: at_joint(qd, i),
+                theta: at_joint(theta, i),
+                thetad: at_joint(thetad, i),
             };
             let (parent, turned) = match body.beta() {
                 None => (previous, previous),
@@ -134,8 +136,8 @@ impl<T: Scalar> Aba<'_, '_, T> {
             }
 
             // τ on the link side of the joint, τ − τ_J on its rotor
-            let load = tau_ext.map_or(F::zero(), |tau| F::load(tau[i]));
-            let known = drives(body, at, F::load(motor[i]), load, model.knots);
+            let load = tau_ext.map_or(F::zero(), |tau| at_joint(tau, i));
+            let known = drives(body, at, at_joint(motor, i), load, model.knots);
 
             // The rotor's couple on its carrier
             if let Some(drive) = &body.drive {

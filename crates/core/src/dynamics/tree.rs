@@ -89,17 +89,16 @@ impl<'a, P: Scalar> Tree<'a, P> {
     }
 }
 
-/// What follows the first `lead` of `lead + n` entries, cut to `n`: an index below `n` then needs no check.
+/// What follows the first `lead` of `lead + n` entries.
 #[inline(always)]
 fn rest<'s, X>(argument: &'static str, all: &'s [X], lead: usize, n: usize) -> Result<&'s [X], SizeError> {
-    let given = all.len();
-    match all.get(lead..).and_then(|rest| rest.get(..n)) {
-        Some(rest) if given - lead == n => Ok(rest),
-        _ => Err(SizeError { argument, expected: lead + n, given }),
+    match all.get(lead..) {
+        Some(rest) if rest.len() == n => Ok(rest),
+        _ => Err(SizeError { argument, expected: lead + n, given: all.len() }),
     }
 }
 
-/// The first `lead` of `lead + n` entries, and the others.
+/// The first `lead` of `lead + n` entries, and the others, cut to `n`: an index below `n` then needs no check.
 #[inline(always)]
 fn split<'s, X>(
     argument: &'static str,
