@@ -166,7 +166,8 @@ def report(_):
              "the median over the rounds; each peer with the fastest of its builds and ways.", summary,
              "Throughput of one core. Lanes are states computed side by side by the same source; the others have no such thing.",
              throughput(entries),
-             "Every build and way, with lanes per state: fastest batch (median batch)" + (" · instructions per call" if counts else "") + "."]
+             "Every build and way, with lanes per state: fastest batch (median batch)" + (" · instructions per call; gyroflex's are in "
+             "benches/instructions.txt, where `arm7` is built like `panda`" if counts else "") + "."]
     parts += [details(entries, algorithm, counts) for algorithm in ALGORITHMS]
     parts += ["Chains and binary trees of any size, every joint with a rotor behind an elastic transmission, gyroflex alone:",
               per_link(entries)]
