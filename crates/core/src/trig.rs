@@ -28,16 +28,22 @@ macro_rules! sin_cos {
                 let mut far = false;
                 for (out, x) in near.iter_mut().zip(angles) {
                     *out = near_zero::<F>(x);
-                    // Not a number is far, too.
-                    far |= !(x.abs() <= $limit);
+                    // Infinity and what is not a number are far, too.
+                    far |= is_far(x);
                 }
                 if far { all_sizes(angles) } else { near }
+            }
+
+            #[inline(always)]
+            fn is_far(x: $float) -> bool {
+                let near = x.abs() <= $limit;
+                !near
             }
 
             #[cold]
             #[inline(never)]
             fn all_sizes<const N: usize>(angles: [$float; N]) -> [($float, $float); N] {
-                angles.map(|x| if x.abs() <= $limit { near_zero::<$float>(x) } else { $far(x) })
+                angles.map(|x| if is_far(x) { $far(x) } else { near_zero::<$float>(x) })
             }
 
             #[inline(always)]

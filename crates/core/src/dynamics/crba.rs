@@ -13,8 +13,8 @@ use super::check_scratch;
 use super::tree::{Tree, turns};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
-use crate::model::{Body, Drive, JointKind, Model, SizeError};
-use crate::spatial::{Force, Motion, SpatialInertia, SymMat3, Transform, Turn, Vec3};
+use crate::model::{Body, JointKind, Model, SizeError};
+use crate::spatial::{Force, Motion, SpatialInertia, Transform, Turn, Vec3};
 
 /// What the algorithm keeps for one body during a call.
 #[derive(Clone, Copy, Debug)]
@@ -94,9 +94,9 @@ impl<T: Scalar> Crba<'_, '_, T> {
         m.fill(T::zero());
 
         turns::<T, F, _>(joints, q, scratch, |s, theta| s.theta = theta);
-        let mut base = tree.root.map_or(SpatialInertia::zero(), |root| root.inertia.map(F::from_param));
+        let mut base = tree.root.map_or(SpatialInertia::zero(), |root| root.inertia_with_rotors());
 
-        // Pass 1, base to tips: X, S and I at the base; elastic rotors, which the inertias lack, are put back in.
+        // Pass 1, base to tips: X, S and I at the base.
         let pose_at = |b: Option<u16>, scratch: &[CrbaScratch<T>]| {
             tree.joint(b).and_then(|b| scratch.get(b)).map_or(Transform::identity(), |s| s.pose.map(F::load))
         };
@@ -116,22 +116,7 @@ impl<T: Scalar> Crba<'_, '_, T> {
             let s = &mut scratch[i];
             s.pose = pose.map(F::store);
             s.axis = axis.map(F::store);
-            s.composite = body.inertia.map(F::from_param).seen_from_parent(pose).map(F::store);
-            if let Some(Drive { rotor, elastic: Some(_) }) = &body.drive
-                && rotor.mount.is_some()
-            {
-                let carrier = if rotor.mount == body.parent && body.beta::<F>().is_none() {
-                    previous
-                } else {
-                    pose_at(rotor.mount, scratch)
-                };
-                let axis = carrier.rot.transpose_mul(rotor.axis_in());
-                let own = SymMat3::outer(axis).scale(F::from_param(rotor.inertia));
-                match tree.joint(rotor.mount).and_then(|b| scratch.get_mut(b)) {
-                    Some(s) => s.composite.rotational = (s.composite.rotational.map(F::load) + own).map(F::store),
-                    None => base.rotational += own,
-                }
-            }
+            s.composite = body.inertia_with_rotors().seen_from_parent(pose).map(F::store);
             previous = pose;
         }
 

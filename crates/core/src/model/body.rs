@@ -2,7 +2,9 @@
 
 use super::{Drive, Friction, Rotor};
 use crate::Scalar;
-use crate::spatial::{ArticulatedInertia, Force, JointTransform, Motion, SpatialInertia, Transform, Turn, Vec3};
+use crate::spatial::{
+    ArticulatedInertia, Force, JointTransform, Motion, SpatialInertia, SymMat3, Transform, Turn, Vec3,
+};
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -69,6 +71,8 @@ pub struct Body<T> {
     pub placement: Placement<T>,
     /// Inertia of the link with what is fixed to it, rotors at rest included; an elastic rotor's `J n nᵀ` excluded.
     pub inertia: SpatialInertia<T>,
+    /// `Σ J n nᵀ` of the elastic rotors that the body carries: what `inertia` lacks of the body with its rotors at rest [kg m²].
+    pub rotors: SymMat3<T>,
     /// Friction on the link side of the joint.
     pub friction: Friction<T>,
     /// The drive of the joint.
@@ -128,6 +132,14 @@ impl<T: Scalar> Body<T> {
         JointTransform { alpha, theta, offset }
     }
 
+    /// Inertia of the body with its rotors at rest.
+    #[inline(always)]
+    pub(crate) fn inertia_with_rotors<F: Scalar<Param = T>>(&self) -> SpatialInertia<F> {
+        let mut inertia = self.inertia.map(F::from_param);
+        inertia.rotational += self.rotors.map(F::from_param);
+        inertia
+    }
+
     /// `β`, unless the joint continues a chain.
     #[inline(always)]
     pub(crate) fn beta<F: Scalar<Param = T>>(&self) -> Option<Turn<F>> {
@@ -150,6 +162,7 @@ impl<T: Scalar> Body<T> {
                 zero: f(at.zero),
             },
             inertia: self.inertia.map(&mut f),
+            rotors: self.rotors.map(&mut f),
             friction: self.friction.map(&mut f),
             drive: self.drive.map(|d| d.map(&mut f)),
             frame: self.frame.map(&mut f),

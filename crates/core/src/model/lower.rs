@@ -57,17 +57,17 @@ impl RobotSpec<'_> {
                     i > 0 && spec.parent == Some(i - 1) && bodies[i - 1].joint != JointKind::Floating,
                 ),
                 inertia: spec.inertia.seen_from_parent(frame),
+                rotors: SymMat3::zero(),
                 frame,
                 friction: spec.friction,
                 drive,
             };
             // A parent, and a rotor's carrier, that is not simply the body before.
             let carrier = drive.and_then(|d| d.rotor.mount());
-            for other in [spec.parent.filter(|p| p + 1 != i), carrier.filter(|m| m + 1 != i || spec.parent != Some(*m))]
-            {
-                if let Some(other) = other {
-                    bodies[other].shared = true;
-                }
+            let parent = spec.parent.filter(|p| p + 1 != i);
+            let carrier = carrier.filter(|m| m + 1 != i || spec.parent != Some(*m));
+            for other in [parent, carrier].into_iter().flatten() {
+                bodies[other].shared = true;
             }
             iq += spec.joint.nq() as u16;
             iv += spec.joint.nv() as u16;
@@ -129,8 +129,9 @@ impl RobotSpec<'_> {
                 bodies[mount].inertia = bodies[mount].inertia + at_rest.seen_from_parent(bodies[mount].frame);
             }
             if record.elastic.is_some() && fidelity.is_gyroscopic() {
-                let own = SymMat3::outer(record.rotor.axis).scale(-spin);
-                bodies[mount].inertia.rotational += own;
+                let own = SymMat3::outer(record.rotor.axis).scale(spin);
+                bodies[mount].inertia.rotational = bodies[mount].inertia.rotational - own;
+                bodies[mount].rotors += own;
             }
         }
     }
@@ -163,6 +164,7 @@ impl Body<f64> {
             shared: false,
             placement: Placement { beta: None, alpha: Turn::none(), offset: Vec3::zero(), zero: 0.0 },
             inertia: SpatialInertia::zero(),
+            rotors: SymMat3::zero(),
             frame: Transform::identity(),
             friction: super::Friction::none(),
             drive: None,
