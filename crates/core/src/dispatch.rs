@@ -117,17 +117,16 @@ impl<T: Fusible> Scalar for Fused<T> {
         (Self(s), Self(c))
     }
     #[inline(always)]
-    fn sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES] {
-        let mut plain = [T::zero(); ANGLES];
+    fn sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
+        let plain = T::fused_sin_cos_each(
+            #[inline(always)]
+            |i| angle(i).0,
+        );
+        let (mut sin, mut cos) = ([Self::zero(); ANGLES], [Self::zero(); ANGLES]);
         for i in 0..ANGLES {
-            plain[i] = angles[i].0;
+            (sin[i], cos[i]) = (Self(plain.0[i]), Self(plain.1[i]));
         }
-        let plain = T::fused_sin_cos_each(plain);
-        let mut turns = [(Self::zero(), Self::zero()); ANGLES];
-        for i in 0..ANGLES {
-            turns[i] = (Self(plain[i].0), Self(plain[i].1));
-        }
-        turns
+        (sin, cos)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {

@@ -2,7 +2,7 @@
 
 use crate::Scalar;
 use crate::dispatch::{Fused, Kernel, on_best_instructions};
-use crate::scalar::Fusible;
+use crate::scalar::{ANGLES, Fusible};
 use crate::trig;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -104,7 +104,8 @@ macro_rules! lanes_of {
             }
             #[inline(always)]
             fn sin_cos(self) -> (Self, Self) {
-                unzip(trig::$trig::sin_cos(self.0))
+                let (sin, cos) = trig::$trig::sin_cos(|i| self.0[i]);
+                (Self(sin), Self(cos))
             }
             #[inline(always)]
             fn atan2(self, x: Self) -> Self {
@@ -139,28 +140,19 @@ macro_rules! lanes_of {
             }
             #[inline(always)]
             fn fused_sin_cos(self) -> (Self, Self) {
-                unzip(trig::$trig::sin_cos_in::<Fused<$float>, N>(self.0))
+                let (sin, cos) = trig::$trig::sin_cos_in::<Fused<$float>, N>(|i| self.0[i]);
+                (Self(sin), Self(cos))
             }
             #[inline(always)]
-            fn fused_sin_cos_each(angles: [Self; crate::scalar::ANGLES]) -> [(Self, Self); crate::scalar::ANGLES] {
-                let mut turns = [(Self::splat(0.0), Self::splat(0.0)); crate::scalar::ANGLES];
-                for i in 0..crate::scalar::ANGLES {
-                    turns[i] = angles[i].fused_sin_cos();
+            fn fused_sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
+                let (mut sin, mut cos) = ([Self::splat(0.0); ANGLES], [Self::splat(0.0); ANGLES]);
+                for i in 0..ANGLES {
+                    (sin[i], cos[i]) = angle(i).fused_sin_cos();
                 }
-                turns
+                (sin, cos)
             }
         }
     };
 }
 lanes_of!(f64, double);
 lanes_of!(f32, single);
-
-#[inline(always)]
-fn unzip<T: Scalar, const N: usize>(pairs: [(T, T); N]) -> (Lanes<T, N>, Lanes<T, N>) {
-    let zero = T::zero();
-    let (mut a, mut b) = ([zero; N], [zero; N]);
-    for i in 0..N {
-        (a[i], b[i]) = pairs[i];
-    }
-    (Lanes(a), Lanes(b))
-}

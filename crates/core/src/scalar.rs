@@ -5,7 +5,7 @@ use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// How many angles [`Scalar::sin_cos_each`] takes at a time.
-pub const ANGLES: usize = 8;
+pub const ANGLES: usize = 4;
 
 /// A real number as the algorithms see it: arithmetic, a handful of elementary functions, no ordering.
 ///
@@ -43,12 +43,12 @@ pub trait Scalar:
     fn sin_cos(self) -> (Self, Self);
     /// Sines and cosines of several angles [rad], which many processors compute side by side.
     #[inline(always)]
-    fn sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES] {
-        let mut turns = [(Self::zero(), Self::zero()); ANGLES];
+    fn sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
+        let (mut sin, mut cos) = ([Self::zero(); ANGLES], [Self::zero(); ANGLES]);
         for i in 0..ANGLES {
-            turns[i] = angles[i].sin_cos();
+            (sin[i], cos[i]) = angle(i).sin_cos();
         }
-        turns
+        (sin, cos)
     }
     /// Angle [rad] of the point with ordinate `self` and abscissa `x`, in `(−π, π]`.
     fn atan2(self, x: Self) -> Self;
@@ -84,7 +84,7 @@ pub trait Fusible: Scalar {
     /// [`Scalar::sin_cos`] with it.
     fn fused_sin_cos(self) -> (Self, Self);
     /// [`Scalar::sin_cos_each`] with it.
-    fn fused_sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES];
+    fn fused_sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]);
 }
 
 macro_rules! float_scalar {
@@ -111,11 +111,12 @@ macro_rules! float_scalar {
             }
             #[inline(always)]
             fn sin_cos(self) -> (Self, Self) {
-                crate::trig::$trig::sin_cos([self])[0]
+                let ([sin], [cos]) = crate::trig::$trig::sin_cos(|_| self);
+                (sin, cos)
             }
             #[inline(always)]
-            fn sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES] {
-                crate::trig::$trig::sin_cos(angles)
+            fn sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
+                crate::trig::$trig::sin_cos(angle)
             }
             #[inline]
             fn atan2(self, x: Self) -> Self {
@@ -146,11 +147,12 @@ macro_rules! float_scalar {
             }
             #[inline(always)]
             fn fused_sin_cos(self) -> (Self, Self) {
-                crate::trig::$trig::sin_cos_in::<crate::dispatch::Fused<Self>, 1>([self])[0]
+                let ([sin], [cos]) = crate::trig::$trig::sin_cos_in::<crate::dispatch::Fused<Self>, 1>(|_| self);
+                (sin, cos)
             }
             #[inline(always)]
-            fn fused_sin_cos_each(angles: [Self; ANGLES]) -> [(Self, Self); ANGLES] {
-                crate::trig::$trig::sin_cos_in::<crate::dispatch::Fused<Self>, ANGLES>(angles)
+            fn fused_sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
+                crate::trig::$trig::sin_cos_in::<crate::dispatch::Fused<Self>, ANGLES>(angle)
             }
         }
     };

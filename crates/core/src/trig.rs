@@ -15,23 +15,31 @@ macro_rules! sin_cos {
         pub(crate) mod $module {
             use super::{Over, far};
 
-            /// Sine and cosine of each angle [rad], to one unit in the last place of 1.
+            /// Sines and cosines of `N` angles [rad], to one unit in the last place of 1.
             #[inline(always)]
-            pub(crate) fn sin_cos<const N: usize>(angles: [$float; N]) -> [($float, $float); N] {
-                sin_cos_in::<$float, N>(angles)
+            pub(crate) fn sin_cos<const N: usize>(angle: impl Fn(usize) -> $float) -> ([$float; N], [$float; N]) {
+                sin_cos_in::<$float, N>(angle)
             }
 
             /// The same in the arithmetic `F`.
             #[inline(always)]
-            pub(crate) fn sin_cos_in<F: Over<$float>, const N: usize>(angles: [$float; N]) -> [($float, $float); N] {
-                let mut near = [(0.0, 0.0); N];
+            pub(crate) fn sin_cos_in<F: Over<$float>, const N: usize>(
+                angle: impl Fn(usize) -> $float,
+            ) -> ([$float; N], [$float; N]) {
+                let (mut sin, mut cos) = ([0.0; N], [0.0; N]);
                 let mut far = false;
-                for (out, x) in near.iter_mut().zip(angles) {
-                    *out = near_zero::<F>(x);
+                for i in 0..N {
+                    let x = angle(i);
+                    (sin[i], cos[i]) = near_zero::<F>(x);
                     // Infinity and what is not a number are far, too.
                     far |= is_far(x);
                 }
-                if far { all_sizes(angles) } else { near }
+                if far {
+                    for i in 0..N {
+                        (sin[i], cos[i]) = any_size(angle(i));
+                    }
+                }
+                (sin, cos)
             }
 
             #[inline(always)]
@@ -42,8 +50,8 @@ macro_rules! sin_cos {
 
             #[cold]
             #[inline(never)]
-            fn all_sizes<const N: usize>(angles: [$float; N]) -> [($float, $float); N] {
-                angles.map(|x| if is_far(x) { $far(x) } else { near_zero::<$float>(x) })
+            fn any_size(x: $float) -> ($float, $float) {
+                if is_far(x) { $far(x) } else { near_zero::<$float>(x) }
             }
 
             #[inline(always)]

@@ -77,7 +77,22 @@ impl<T: Scalar> Aba<'_, '_, T> {
         let (root_qdd, qdd) = tree.velocities_mut("qdd", out.qdd)?;
         let (root_thetadd, thetadd) = tree.velocities_mut("thetadd", out.thetadd)?;
         let (root_tau_j, tau_j) = tree.velocities_mut("tau_j", out.tau_j)?;
-        turns::<T, F, _>(joints, q, scratch, |s, theta| s.theta = theta);
+        turns::<T, F, _>(joints, q, scratch, |body, q| body.angle_as(kind(body), q), |s, theta| s.theta = theta);
+
+        // At each joint for itself: τ on its link side, τ − τ_J on its rotor.
+        for i in 0..n {
+            let state = JointState {
+                q: F::load(q[i]),
+                qd: F::load(qd[i]),
+                theta: F::load(theta[i]),
+                thetad: F::load(thetad[i]),
+            };
+            let load = tau_ext.map_or(F::zero(), |tau| F::load(tau[i]));
+            let known = drives(&joints[i], state, F::load(motor[i]), load, model.knots);
+            scratch[i].u = known.on_link.store();
+            scratch[i].on_rotor = known.on_rotor.store();
+            tau_j[i] = known.tau_j.store();
+        }
 
         // The base: at rest, or a root moving freely.
         let lift = -model.gravity.map(F::from_param);
@@ -102,12 +117,7 @@ impl<T: Scalar> Aba<'_, '_, T> {
         for i in 0..n {
             let body = &joints[i];
             let joint = kind(body);
-            let at = JointState {
-                q: F::load(q[i]),
-                qd: at_joint(qd, i),
-                theta: at_joint(theta, i),
-                thetad: at_joint(thetad, i),
-            };
+            let qd = F::load(qd[i]);
             let (parent, turned) = match body.beta() {
                 None => (previous, previous),
                 Some(beta) => {
@@ -115,35 +125,29 @@ impl<T: Scalar> Aba<'_, '_, T> {
                     (parent, beta.z(parent))
                 }
             };
-            let x = body.across_as(joint, scratch[i].theta.map(F::load), at.q);
+            let x = body.across_as(joint, scratch[i].theta.map(F::load), F::load(q[i]));
 
             // ω = E ω_p + z q̇,   c = [ω × z q̇; E (ω_p × (ω_p × r))]
             let mut omega = x.rotate(turned);
             let mut c = Motion { ang: Vec3::zero(), lin: x.rotate(centripetal(turned, x.offset)) };
-            let across = Vec3::new(omega.y * at.qd, -(omega.x * at.qd), F::zero());
+            let across = Vec3::new(omega.y * qd, -(omega.x * qd), F::zero());
             match joint {
                 JointKind::Prismatic => c.lin += across + across,
                 _ => {
                     c.ang = across;
-                    omega.z += at.qd;
+                    omega.z += qd;
                 }
             }
 
-            // pᴬ = [ω × I ω; ω × (ω × h)] − f_ext
-            let mut p = velocity_force(body.inertia.map(F::from_param), omega);
-            if let Some(wrenches) = wrenches {
-                p -= body.frame.map(F::from_param).inv_force(wrenches[i].map(F::load));
-            }
-
-            // τ on the link side of the joint, τ − τ_J on its rotor
-            let load = tau_ext.map_or(F::zero(), |tau| at_joint(tau, i));
-            let known = drives(body, at, at_joint(motor, i), load, model.knots);
+            // pᴬ = [ω × I ω; ω × (ω × h)]
+            let p = velocity_force(body.inertia.map(F::from_param), omega);
 
             // The rotor's couple on its carrier
             if let Some(drive) = &body.drive {
                 let beside = drive.rotor.mount == body.parent;
                 let omega = if beside { parent } else { omega_at(drive.rotor.mount, scratch) };
-                let couple = rotor_couple(drive, at, omega, known.on_rotor);
+                let spin = drive.spin(qd, at_joint(thetad, i));
+                let couple = rotor_couple(drive, spin, omega, F::load(scratch[i].on_rotor));
                 scratch[i].couple = couple.map(F::store);
                 if !beside {
                     match tree.joint(drive.rotor.mount).and_then(|b| scratch.get_mut(b)) {
@@ -156,14 +160,17 @@ impl<T: Scalar> Aba<'_, '_, T> {
             let s = &mut scratch[i];
             s.c = c.map(F::store);
             s.p = p.map(F::store);
-            s.u = known.on_link.store();
-            s.on_rotor = known.on_rotor.store();
             if body.shared {
                 s.omega = omega.map(F::store);
                 s.ia = ArticulatedInertia::zero();
             }
-            tau_j[i] = known.tau_j.store();
             previous = omega;
+        }
+        if let Some(wrenches) = wrenches {
+            for i in 0..n {
+                let wrench = joints[i].frame.map(F::from_param).inv_force(wrenches[i].map(F::load));
+                scratch[i].p = (scratch[i].p.map(F::load) - wrench).map(F::store);
+            }
         }
 
         // Pass 2, tips to base: articulated inertias, chain by chain from its tip to the body that it hangs on.

@@ -93,7 +93,7 @@ impl<T: Scalar> Crba<'_, '_, T> {
         let lead = nv - n;
         m.fill(T::zero());
 
-        turns::<T, F, _>(joints, q, scratch, |s, theta| s.theta = theta);
+        turns::<T, F, _>(joints, q, scratch, |body, q| body.angle_as(kind(body), q), |s, theta| s.theta = theta);
         let mut base = tree.root.map_or(SpatialInertia::zero(), |root| root.inertia_with_rotors());
 
         // Pass 1, base to tips: X, S and I at the base.

@@ -88,19 +88,14 @@ pub(super) fn drives<T: Scalar>(
     }
 }
 
-/// Couple that a rotor needs of its carrier, of angular velocity `omega`, as far as the state alone says: elastic
-/// `ω × h n + (τ − τ_J)/N n`, rigid `ω × N J q̇ n`, in the carrier's axes.
+/// Couple that a rotor needs of its carrier, of angular velocity `omega`, as far as the state alone says: elastic, of
+/// reflected speed `spin = θ̇`, `ω × h n + (τ − τ_J)/N n`, rigid, `spin = q̇`, `ω × N J q̇ n`, in the carrier's axes.
 #[inline(always)]
-pub(super) fn rotor_couple<T: Scalar>(
-    drive: &Drive<T::Param>,
-    at: JointState<T>,
-    omega: Vec3<T>,
-    on_rotor: T,
-) -> Vec3<T> {
+pub(super) fn rotor_couple<T: Scalar>(drive: &Drive<T::Param>, spin: T, omega: Vec3<T>, on_rotor: T) -> Vec3<T> {
     let rotor = &drive.rotor;
     let (h, h_dot) = match drive.elastic {
-        Some(_) => (rotor.axial_momentum(at.thetad, omega), on_rotor * T::from_param(rotor.inv_gear_ratio)),
-        None => (rotor.axial_momentum(at.qd, Vec3::zero()), T::zero()),
+        Some(_) => (rotor.axial_momentum(spin, omega), on_rotor * T::from_param(rotor.inv_gear_ratio)),
+        None => (rotor.axial_momentum(spin, Vec3::zero()), T::zero()),
     };
     let axis = rotor.axis_in();
     omega.cross_plus(axis.scale(h), axis.scale(h_dot))

@@ -142,7 +142,7 @@ fn outward<T: Scalar>(
         if let Some(drive) = &body.drive
             && let Some(m) = drive.rotor.mount()
         {
-            let couple = rotor_couple(drive, at, scratch[m].v.ang, known.on_rotor);
+            let couple = rotor_couple(drive, drive.spin(at.qd, at.thetad), scratch[m].v.ang, known.on_rotor);
             scratch[m].f.ang += couple;
         }
     }

@@ -47,7 +47,7 @@ impl<T: Scalar> Kernel<T> for Placements<'_, '_, T> {
         let Self { model, q, out } = self;
         let tree = Tree::of(model);
         let ((root_out, out), joints_q) = (tree.bodies_mut("out", out)?, tree.positions(q)?);
-        turns::<T, F, _>(tree.joints, joints_q, out, |pose, theta| {
+        turns::<T, F, _>(tree.joints, joints_q, out, Body::angle, |pose, theta| {
             (pose.pos.x, pose.pos.y) = (theta.sin, theta.cos);
         });
         let mut base = Transform::identity();

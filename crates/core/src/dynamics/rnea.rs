@@ -107,7 +107,7 @@ impl<T: Scalar> Rnea<'_, '_, T> {
         let (_, scratch) = tree.bodies_mut("scratch", scratch)?;
         let (root_tau_j, tau_j) = tree.velocities_mut("tau_j", out.tau_j)?;
         let (root_tau, tau) = tree.velocities_mut("tau", out.tau)?;
-        turns::<T, F, _>(joints, q, scratch, |s, theta| s.theta = theta);
+        turns::<T, F, _>(joints, q, scratch, |body, q| body.angle_as(kind(body), q), |s, theta| s.theta = theta);
 
         // The base: at rest, or the root with its own equation.
         let lift = -model.gravity.map(F::from_param);

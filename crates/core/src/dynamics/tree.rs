@@ -92,8 +92,8 @@ impl<'a, P: Scalar> Tree<'a, P> {
 /// What follows the first `lead` of `lead + n` entries.
 #[inline(always)]
 fn rest<'s, X>(argument: &'static str, all: &'s [X], lead: usize, n: usize) -> Result<&'s [X], SizeError> {
-    match all.get(lead..) {
-        Some(rest) if rest.len() == n => Ok(rest),
+    match all.get(lead..lead + n) {
+        Some(rest) if all.len() == lead + n => Ok(rest),
         _ => Err(SizeError { argument, expected: lead + n, given: all.len() }),
     }
 }
@@ -121,20 +121,30 @@ pub(super) fn turns<T: Scalar, F: Over<T>, S>(
     joints: &[Body<T::Param>],
     q: &[T],
     scratch: &mut [S],
+    angle: impl Fn(&Body<T::Param>, F) -> F,
     mut keep: impl FnMut(&mut S, Turn<T>),
 ) {
     let mut start = 0;
     while start < joints.len() {
-        let mut angles = [F::zero(); ANGLES];
-        for k in 0..ANGLES {
-            if let (Some(joint), Some(q)) = (joints.get(start + k), q.get(start + k)) {
-                angles[k] = joint.angle(F::load(*q));
+        // The last group reaches back, so that every group is whole.
+        let from = start.min(joints.len().saturating_sub(ANGLES));
+        let (joints, q) = (joints.get(from..).unwrap_or(&[]), q.get(from..).unwrap_or(&[]));
+        let scratch = scratch.get_mut(from..).unwrap_or(&mut []);
+        match (joints.first_chunk::<ANGLES>(), q.first_chunk::<ANGLES>(), scratch.first_chunk_mut::<ANGLES>()) {
+            (Some(joints), Some(q), Some(scratch)) => {
+                let (sin, cos) = F::sin_cos_each(
+                    #[inline(always)]
+                    |k| angle(&joints[k], F::load(q[k])),
+                );
+                for k in 0..ANGLES {
+                    keep(&mut scratch[k], Turn { sin: sin[k].store(), cos: cos[k].store() });
+                }
             }
-        }
-        let turns = F::sin_cos_each(angles);
-        for k in 0..ANGLES {
-            if let Some(s) = scratch.get_mut(start + k) {
-                keep(s, Turn { sin: turns[k].0.store(), cos: turns[k].1.store() });
+            _ => {
+                for ((joint, q), s) in joints.iter().zip(q).zip(scratch) {
+                    let (sin, cos) = angle(joint, F::load(*q)).sin_cos();
+                    keep(s, Turn { sin: sin.store(), cos: cos.store() });
+                }
             }
         }
         start += ANGLES;

@@ -106,8 +106,14 @@ impl<T: Scalar> Body<T> {
     /// Angle about the joint axis at the joint's coordinate `q`.
     #[inline(always)]
     pub(crate) fn angle<F: Scalar<Param = T>>(&self, q: F) -> F {
+        self.angle_as(self.joint, q)
+    }
+
+    /// The same where the kind of joint is known.
+    #[inline(always)]
+    pub(crate) fn angle_as<F: Scalar<Param = T>>(&self, joint: JointKind, q: F) -> F {
         let zero = F::from_param(self.placement.zero);
-        match self.joint {
+        match joint {
             JointKind::Revolute => q + zero,
             _ => zero,
         }

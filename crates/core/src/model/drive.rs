@@ -118,6 +118,12 @@ impl<T: Scalar> TransmissionError<T> {
 }
 
 impl<T: Scalar> Drive<T> {
+    /// Reflected speed of the rotor: `θ̇`, behind a rigid gear `q̇`.
+    #[inline(always)]
+    pub(crate) fn spin<F: Scalar<Param = T>>(&self, qd: F, thetad: F) -> F {
+        if self.elastic.is_some() { thetad } else { qd }
+    }
+
     pub(crate) fn map<U>(self, mut f: impl FnMut(T) -> U) -> Drive<U> {
         let r = self.rotor;
         Drive {
