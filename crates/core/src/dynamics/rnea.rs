@@ -119,7 +119,7 @@ impl<T: Scalar> Rnea<'_, '_, T> {
             let asked = Motion::from(first::<T, F, 6>(accel.qdd));
             let lin = at.v.ang.cross_plus(at.v.lin, asked.lin) + at.rot * lift;
             base = Moving::new(at.v.ang, Motion { ang: asked.ang, lin });
-            base_force = base.force_on(root.inertia.map(F::from_param));
+            base_force = base.force_on(&base.field(), root.inertia.map(F::from_param));
             if let Some(wrench) = ext.wrenches.first() {
                 base_force -= root.frame.map(F::from_param).inv_force(wrench.map(F::load));
             }
@@ -130,22 +130,24 @@ impl<T: Scalar> Rnea<'_, '_, T> {
         };
 
         // Pass 1, base to tips: motion, and the force each body needs.
-        let mut previous = base;
+        let mut previous = (base, base.field());
         for i in 0..n {
             let body = &joints[i];
             let (q, qd, qdd) = (F::load(q[i]), F::load(qd[i]), F::load(qdd[i]));
-            let (parent, turned) = match body.beta() {
-                None => (previous, previous),
+            let (parent, turned, field) = match body.beta() {
+                None => (previous.0, previous.0, previous.1),
                 Some(beta) => {
                     let parent = at_body(body.parent, scratch);
-                    (parent, parent.turned(beta))
+                    let turned = parent.turned(beta);
+                    (parent, turned, turned.field())
                 }
             };
             let x = body.across_as(kind(body), scratch[i].theta.map(F::load), q);
-            let moving = turned.across(&x, kind(body), qd, qdd);
+            let moving = turned.across(&field, &x, kind(body), qd, qdd);
+            let field = moving.field();
 
             // f = m a + α × h + ω × (ω × h) − f_ext,   n = I α + ω × I ω + h × a − n_ext
-            let mut f = moving.force_on(body.inertia.map(F::from_param));
+            let mut f = moving.force_on(&field, body.inertia.map(F::from_param));
             if let Some(wrenches) = wrenches {
                 f -= body.frame.map(F::from_param).inv_force(wrenches[i].map(F::load));
             }
@@ -179,7 +181,7 @@ impl<T: Scalar> Rnea<'_, '_, T> {
             if body.shared {
                 scratch[i].moving = moving.map(F::store);
             }
-            previous = moving;
+            previous = (moving, field);
         }
 
         // Pass 2, tips to base: forces across the joints.

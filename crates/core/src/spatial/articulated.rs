@@ -53,9 +53,9 @@ impl<T: Scalar> ArticulatedInertia<T> {
             xx: cross_term(r.y, d0.z, r.z, d0.y, i.xx),
             yy: cross_term(r.z, d1.x, r.x, d1.z, i.yy),
             zz: cross_term(r.x, d2.y, r.y, d2.x, i.zz),
-            xy: cross_term(r.y, g1.z, r.z, g1.y, cross_term(r.z, h0.x, r.x, h0.z, i.xy)),
-            xz: cross_term(r.y, g2.z, r.z, g2.y, cross_term(r.x, h0.y, r.y, h0.x, i.xz)),
-            yz: cross_term(r.z, g2.x, r.x, g2.z, cross_term(r.x, h1.y, r.y, h1.x, i.yz)),
+            xy: r.z.mul_add(h0.x - g1.y, cross_term(r.y, g1.z, r.x, h0.z, i.xy)),
+            xz: r.y.mul_add(g2.z - h0.x, cross_term(r.x, h0.y, r.z, g2.y, i.xz)),
+            yz: r.x.mul_add(h1.y - g2.z, cross_term(r.z, g2.x, r.y, h1.x, i.yz)),
         };
         Self { ang, mixed: Mat3::from_rows(g0, g1, g2), lin: self.lin }
     }

@@ -148,7 +148,8 @@ impl<T: Scalar> Turn<T> {
     pub(super) fn sym_back(self, aa: T, bb: T, ab: T) -> (T, T, T) {
         // With w = s (aa − bb) + 2 c ab:   aa' = aa − s w,   bb' = bb + s w,   ab' = c w − ab
         let w = self.sin.mul_add(aa - bb, self.cos * (ab + ab));
-        ((-self.sin).mul_add(w, aa), self.sin.mul_add(w, bb), self.cos.mul_add(w, -ab))
+        let sw = self.sin * w;
+        (aa - sw, bb + sw, self.cos.mul_add(w, -ab))
     }
 
     /// `Rᵀ A R` of a general `A` in the plane.
@@ -156,6 +157,7 @@ impl<T: Scalar> Turn<T> {
     pub(super) fn mat_back(self, [[aa, ab], [ba, bb]]: [[T; 2]; 2]) -> [[T; 2]; 2] {
         // With w = s (aa − bb) + c (ab + ba):   aa' = aa − s w,   bb' = bb + s w,   ab' = c w − ba,   ba' = c w − ab
         let w = self.sin.mul_add(aa - bb, self.cos * (ab + ba));
-        [[(-self.sin).mul_add(w, aa), self.cos.mul_add(w, -ba)], [self.cos.mul_add(w, -ab), self.sin.mul_add(w, bb)]]
+        let (sw, cw) = (self.sin * w, self.cos * w);
+        [[aa - sw, cw - ba], [cw - ab, bb + sw]]
     }
 }
