@@ -118,18 +118,18 @@ impl<T: Scalar> Aba<'_, '_, T> {
             let body = &joints[i];
             let joint = kind(body);
             let qd = F::load(qd[i]);
-            let (parent, turned) = match body.beta() {
-                None => (previous, previous),
-                Some(beta) => {
+            let x = body.across_as(joint, scratch[i].theta.map(F::load), F::load(q[i]));
+            let (parent, turned, r) = match body.branch() {
+                None => (previous, previous, x.offset()),
+                Some(branch) => {
                     let parent = omega_at(body.parent, scratch);
-                    (parent, beta.z(parent))
+                    (parent, branch.turn.z(parent), branch.shift + x.offset())
                 }
             };
-            let x = body.across_as(joint, scratch[i].theta.map(F::load), F::load(q[i]));
 
             // ω = E ω_p + z q̇,   c = [ω × z q̇; E (ω_p × (ω_p × r))]
             let mut omega = x.rotate(turned);
-            let mut c = Motion { ang: Vec3::zero(), lin: x.rotate(centripetal(turned, x.offset)) };
+            let mut c = Motion { ang: Vec3::zero(), lin: x.rotate(centripetal(turned, r)) };
             let across = Vec3::new(omega.y * qd, -(omega.x * qd), F::zero());
             match joint {
                 JointKind::Prismatic => c.lin += across + across,
@@ -197,6 +197,11 @@ impl<T: Scalar> Aba<'_, '_, T> {
                 s.d_inv = d_inv.store();
                 s.u = left.store();
 
+                // The fixed world bears whatever comes.
+                if body.parent.is_none() {
+                    break;
+                }
+
                 // Iᵃ = Iᴬ − U Uᵀ/d,   pᵃ = pᴬ + Iᵃ c + U u/d;   Iᴬ_p += Xᵀ Iᵃ X,   pᴬ_p += Xᵀ pᵃ
                 let x = body.across_as(joint, s.theta.map(F::load), F::load(*q));
                 (ia_next, p_next) = if PLAIN {
@@ -206,7 +211,7 @@ impl<T: Scalar> Aba<'_, '_, T> {
                 } else {
                     // With W = Xᵀ U + [N J n; 0] for Xᵀ U: a rigidly geared rotor leans on the parent, too.
                     let lean = body.rigid_coupling::<F>();
-                    let lean = body.beta().map_or(lean, |beta| Force::couple(beta.z(lean.ang)));
+                    let lean = body.branch().map_or(lean, |branch| Force::couple(branch.turn.z(lean.ang)));
                     let w = x.inv_force(u_cap) + lean;
                     let pa = x.inv_force(ia.force(c) + p).plus_scaled(left * d_inv, w);
                     (x.inv_articulated(ia).minus_outer(w, d_inv), pa)
@@ -215,11 +220,11 @@ impl<T: Scalar> Aba<'_, '_, T> {
                     Some(drive) if drive.rotor.mount == body.parent => s.couple.map(F::load),
                     _ => Vec3::zero(),
                 };
-                let Some(beta) = body.beta() else {
+                let Some(branch) = body.branch() else {
                     p_next.ang += couple;
                     continue;
                 };
-                let (ia, p) = (beta.z_back_articulated(ia_next), beta.z_back_force(p_next) + Force::couple(couple));
+                let (ia, p) = (branch.inv_articulated(ia_next), branch.inv_force(p_next) + Force::couple(couple));
                 match tree.joint(body.parent).and_then(|p| scratch.get_mut(p)) {
                     Some(parent) => {
                         parent.ia = (parent.ia.map(F::load) + ia).map(F::store);
@@ -249,11 +254,11 @@ impl<T: Scalar> Aba<'_, '_, T> {
         for i in 0..n {
             let (body, s) = (&joints[i], &scratch[i]);
             let joint = kind(body);
-            let (parent, turned) = match body.beta() {
+            let (parent, turned) = match body.branch() {
                 None => (previous, previous),
-                Some(beta) => {
+                Some(branch) => {
                     let parent = accel_at(body.parent, scratch);
-                    (parent, beta.z_motion(parent))
+                    (parent, branch.motion(parent))
                 }
             };
 

@@ -4,13 +4,14 @@
 //! geared rotors fully in it; [`coupling`] gives `S`, whose column `j` is `N_j J_j n_jᵀ` times the angular Jacobian of the
 //! body that carries rotor `j`; [`reflected_inertia`] gives the diagonal of `B`.
 //!
-//! Everything is taken to the axes and the origin of the base, the world or a floating root: there composite inertias are
-//! sums, and an entry of the matrix is one scalar product of a motion and a force.
+//! Composite inertias go from body to body, where a joint's own force `Iᶜ S` is one of their columns; that force and `S` are
+//! taken to the axes and the origin of the base, the world or a floating root, where an entry of the matrix is one scalar
+//! product.
 //!
 //! Cost O(n·depth). No allocation, no panic, no branch on values.
 
 use super::check_scratch;
-use super::tree::{Tree, turns};
+use super::tree::{Tree, store_first, turns};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
 use crate::model::{Body, JointKind, Model, SizeError};
@@ -25,7 +26,9 @@ pub struct CrbaScratch<T> {
     pose: Transform<T>,
     /// `S`, at the base.
     axis: Motion<T>,
-    /// `Iᶜ`, at the base.
+    /// The parent, beside what else the walk to the base reads.
+    parent: Option<u16>,
+    /// `Iᶜ` so far, of a body that others than the next hang on.
     composite: SpatialInertia<T>,
 }
 
@@ -36,6 +39,7 @@ impl<T: Scalar> CrbaScratch<T> {
             theta: Turn::none(),
             pose: Transform::identity(),
             axis: Motion::zero(),
+            parent: None,
             composite: SpatialInertia::zero(),
         }
     }
@@ -96,16 +100,16 @@ impl<T: Scalar> Crba<'_, '_, T> {
         turns::<T, F, _>(joints, q, scratch, |body, q| body.angle_as(kind(body), q), |s, theta| s.theta = theta);
         let mut base = tree.root.map_or(SpatialInertia::zero(), |root| root.inertia_with_rotors());
 
-        // Pass 1, base to tips: X, S and I at the base.
+        // Pass 1, base to tips: X and S at the base.
         let pose_at = |b: Option<u16>, scratch: &[CrbaScratch<T>]| {
             tree.joint(b).and_then(|b| scratch.get(b)).map_or(Transform::identity(), |s| s.pose.map(F::load))
         };
         let mut previous = Transform::identity();
         for i in 0..n {
             let body = &joints[i];
-            let parent = match body.beta() {
+            let parent = match body.branch() {
                 None => previous,
-                Some(beta) => beta.z_after(pose_at(body.parent, scratch)),
+                Some(branch) => branch.after(pose_at(body.parent, scratch)),
             };
             let pose = body.across_as(kind(body), scratch[i].theta.map(F::load), F::load(q[i])).after(parent);
             let z = pose.rot.rows[2];
@@ -116,29 +120,41 @@ impl<T: Scalar> Crba<'_, '_, T> {
             let s = &mut scratch[i];
             s.pose = pose.map(F::store);
             s.axis = axis.map(F::store);
-            s.composite = body.inertia_with_rotors().seen_from_parent(pose).map(F::store);
+            s.parent = body.parent;
+            if body.shared {
+                s.composite = SpatialInertia::zero();
+            }
             previous = pose;
         }
 
-        // Pass 2, tips to base: Iᶜ_p += Iᶜ,   F = Iᶜ S,   M_ji = S_jᵀ F for the joints j that support i
+        // Pass 2, tips to base: Iᶜ_p += Xᵀ Iᶜ X,   F = Iᶜ S,   M_ji = S_jᵀ F for the joints j that support i
+        let mut carried = SpatialInertia::<F>::zero();
         for i in (0..n).rev() {
             let body = &joints[i];
-            let composite: SpatialInertia<F> = scratch[i].composite.map(F::load);
-            match tree.joint(body.parent).and_then(|p| scratch.get_mut(p)) {
-                Some(parent) => parent.composite = (parent.composite.map(F::load) + composite).map(F::store),
-                None => base = base + composite,
+            let mut composite = body.inertia_with_rotors() + carried;
+            if body.shared {
+                composite = composite + scratch[i].composite.map(F::load);
             }
-
-            let mut write = |row: usize, entry: F| {
-                for at in [row * nv + lead + i, (lead + i) * nv + row] {
-                    if let Some(m) = m.get_mut(at) {
-                        *m = entry.store();
+            carried = SpatialInertia::zero();
+            if body.parent.is_some() {
+                let x = body.across_as(kind(body), scratch[i].theta.map(F::load), F::load(q[i]));
+                carried = x.inv_inertia(composite);
+                if let Some(branch) = body.branch() {
+                    let at_parent = branch.inv_inertia(carried);
+                    carried = SpatialInertia::zero();
+                    match tree.joint(body.parent).and_then(|p| scratch.get_mut(p)) {
+                        Some(parent) => parent.composite = (parent.composite.map(F::load) + at_parent).map(F::store),
+                        None => base = base + at_parent,
                     }
                 }
-            };
-            let axis: Motion<F> = scratch[i].axis.map(F::load);
-            let mut f = composite.momentum(axis);
-            write(lead + i, axis.dot(f) + body.rigid_reflected_inertia());
+            }
+
+            let own = kind(body).column_of_rigid(&composite);
+            let Some(row) = m.get_mut((lead + i) * nv..).and_then(|m| m.get_mut(..nv)) else { break };
+            let (to_root, row) = row.split_at_mut(lead);
+            row[i] = (kind(body).along(own) + body.rigid_reflected_inertia()).store();
+
+            let mut f = scratch[i].pose.map(F::load).inv_force(own);
             let rigid = body.rigid_rotor();
             let mut support = body.parent;
             while support.is_some() {
@@ -146,12 +162,13 @@ impl<T: Scalar> Crba<'_, '_, T> {
                 if let Some(rotor) = rigid.filter(|rotor| rotor.mount == support) {
                     f.ang += pose_at(support, scratch).rot.transpose_mul(rotor.coupling());
                 }
-                let Some((j, s)) = tree.joint(support).and_then(|j| Some((j, scratch.get(j)?))) else { break };
-                write(lead + j, s.axis.map(F::load).dot(f));
-                support = joints.get(j).and_then(|body| body.parent);
+                let Some(j) = tree.joint(support) else { break };
+                let (Some(s), Some(entry)) = (scratch.get(j), row.get_mut(j)) else { break };
+                *entry = s.axis.map(F::load).dot(f).store();
+                support = s.parent;
             }
             if support.is_some() {
-                f.to_array().into_iter().enumerate().for_each(|(row, f)| write(row, f));
+                store_first(to_root, f.to_array());
             }
         }
 
@@ -159,11 +176,15 @@ impl<T: Scalar> Crba<'_, '_, T> {
             for column in 0..6 {
                 let mut unit = [F::zero(); 6];
                 unit[column] = F::one();
-                for (row, entry) in base.momentum(Motion::from(unit)).to_array().into_iter().enumerate() {
-                    if let Some(m) = m.get_mut(row * nv + column) {
-                        *m = entry.store();
-                    }
-                }
+                let row = m.get_mut(column * nv..).unwrap_or(&mut []);
+                store_first(row, base.momentum(Motion::from(unit)).to_array());
+            }
+        }
+        // M = Mᵀ
+        for i in 1..nv {
+            let (above, below) = m.split_at_mut(i * nv);
+            for (column, entry) in above.chunks_exact_mut(nv).zip(below) {
+                column[i] = *entry;
             }
         }
         Ok(())
@@ -205,7 +226,7 @@ pub fn coupling<T: Scalar>(
             }
             s[on.v_index() * nv + column] = on.joint.along(f);
             f = on.across(scratch[b].theta, q[on.q_index()]).inv_force(f);
-            f = on.beta().map_or(f, |beta| beta.z_back_force(f));
+            f = on.branch().map_or(f, |branch| branch.inv_force(f));
             at = on.parent();
         }
     }

@@ -60,10 +60,10 @@ impl<T: Scalar> Kernel<T> for Placements<'_, '_, T> {
         for i in 0..tree.joints.len() {
             let body = &tree.joints[i];
             let theta = Turn { sin: F::load(out[i].pos.x), cos: F::load(out[i].pos.y) };
-            let parent = match body.beta() {
+            let parent = match body.branch() {
                 None => previous,
-                Some(beta) => beta
-                    .z_after(tree.joint(body.parent).and_then(|p| out.get(p)).map_or(base, |pose| pose.map(F::load))),
+                Some(branch) => branch
+                    .after(tree.joint(body.parent).and_then(|p| out.get(p)).map_or(base, |pose| pose.map(F::load))),
             };
             previous = body.across(theta, F::load(joints_q[i])).after(parent);
             out[i] = previous.map(F::store);
@@ -111,7 +111,7 @@ pub(super) fn transform<T: Scalar>(body: &Body<T::Param>, q: &[T]) -> Transform<
     }
     let (sin, cos) = body.angle(q[at]).sin_cos();
     let x = body.across(Turn { sin, cos }, q[at]);
-    x.after(body.beta().map_or(Transform::identity(), |beta| beta.z_after(Transform::identity())))
+    x.after(body.branch().map_or(Transform::identity(), |branch| branch.after(Transform::identity())))
 }
 
 /// `v = X v_p + S q̇`.

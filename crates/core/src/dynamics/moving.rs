@@ -62,19 +62,17 @@ impl<T: Scalar> Moving<T> {
         Self { omega: turn.z(self.omega), accel: turn.z_motion(self.accel) }
     }
 
-    /// The body across a joint of velocity `qd` and acceleration `qdd`; `field` is that of the body before.
+    /// The same at the point `r`: `a + Ω r`.
     #[inline(always)]
-    pub(super) fn across(
-        self,
-        field: &AccelerationField<T>,
-        x: &JointTransform<T>,
-        joint: JointKind,
-        qd: T,
-        qdd: T,
-    ) -> Self {
-        // ω = E ω_p,   α = E α_p,   a = E (a_p + Ω_p r), and what the joint adds:
-        let (omega, ang) = (x.rotate(self.omega), x.rotate(self.accel.ang));
-        let lin = x.rotate(self.accel.lin + field.rows * x.offset);
+    pub(super) fn at(self, field: &AccelerationField<T>, r: Vec3<T>) -> Self {
+        Self::new(self.omega, Motion { ang: self.accel.ang, lin: self.accel.lin + field.rows * r })
+    }
+
+    /// The body across a joint of velocity `qd` and acceleration `qdd` that sits where `self` is said.
+    #[inline(always)]
+    pub(super) fn across(self, x: &JointTransform<T>, joint: JointKind, qd: T, qdd: T) -> Self {
+        // ω = E ω_p,   α = E α_p,   a = E a_p, and what the joint adds:
+        let (omega, ang, lin) = (x.rotate(self.omega), x.rotate(self.accel.ang), x.rotate(self.accel.lin));
         match joint {
             // a += z q̈ + 2 ω × z q̇
             JointKind::Prismatic => {

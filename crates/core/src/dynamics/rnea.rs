@@ -134,16 +134,16 @@ impl<T: Scalar> Rnea<'_, '_, T> {
         for i in 0..n {
             let body = &joints[i];
             let (q, qd, qdd) = (F::load(q[i]), F::load(qd[i]), F::load(qdd[i]));
-            let (parent, turned, field) = match body.beta() {
-                None => (previous.0, previous.0, previous.1),
-                Some(beta) => {
+            let x = body.across_as(kind(body), scratch[i].theta.map(F::load), q);
+            let (parent, turned) = match body.branch() {
+                None => (previous.0, previous.0.at(&previous.1, x.offset())),
+                Some(branch) => {
                     let parent = at_body(body.parent, scratch);
-                    let turned = parent.turned(beta);
-                    (parent, turned, turned.field())
+                    let turned = parent.turned(branch.turn);
+                    (parent, turned.at(&turned.field(), branch.shift + x.offset()))
                 }
             };
-            let x = body.across_as(kind(body), scratch[i].theta.map(F::load), q);
-            let moving = turned.across(&field, &x, kind(body), qd, qdd);
+            let moving = turned.across(&x, kind(body), qd, qdd);
             let field = moving.field();
 
             // f = m a + α × h + ω × (ω × h) − f_ext,   n = I α + ω × I ω + h × a − n_ext
@@ -195,29 +195,32 @@ impl<T: Scalar> Rnea<'_, '_, T> {
             if let Some(tau_ext) = tau_ext {
                 joint -= F::load(tau_ext[i]);
             }
-            // f_p += Xᵀ f
-            let x = body.across_as(kind(body), s.theta.map(F::load), F::load(q[i]));
-            let mut on_parent = x.inv_force(f);
-            if let Some(beta) = body.beta() {
-                on_parent = beta.z_back_force(on_parent);
-            }
-
             let mut motor = joint;
             if let Some(Drive { rotor, elastic }) = &body.drive {
                 if let Some(elastic) = elastic {
                     motor = (F::one() - transmission_error(elastic, rotor, F::load(theta[i])).1) * joint;
                 }
                 motor += F::load(s.on_rotor);
-                if rotor.mount == body.parent {
-                    on_parent.ang += s.couple.map(F::load);
-                }
             }
             tau_j[i] = joint.store();
             tau[i] = motor.store();
 
-            incoming = on_parent;
-            if body.placement.beta.is_some() {
-                incoming = Force::zero();
+            // f_p += Xᵀ f and the rotor's couple; the fixed world bears whatever comes
+            incoming = Force::zero();
+            if body.parent.is_none() {
+                continue;
+            }
+            let x = body.across_as(kind(body), s.theta.map(F::load), F::load(q[i]));
+            let mut on_parent = x.inv_force(f);
+            if let Some(branch) = body.branch() {
+                on_parent = branch.inv_force(on_parent);
+            }
+            if body.carrier() == body.parent {
+                on_parent.ang += s.couple.map(F::load);
+            }
+            if body.placement.branch.is_none() {
+                incoming = on_parent;
+            } else {
                 match tree.joint(body.parent).and_then(|p| scratch.get_mut(p)) {
                     Some(parent) => parent.f = (parent.f.map(F::load) + on_parent).map(F::store),
                     None => base_force += on_parent,

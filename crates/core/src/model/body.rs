@@ -3,7 +3,7 @@
 use super::{Drive, Friction, Rotor};
 use crate::Scalar;
 use crate::spatial::{
-    ArticulatedInertia, Force, JointTransform, Motion, SpatialInertia, SymMat3, Transform, Turn, Vec3,
+    ArticulatedInertia, Branch, Force, JointTransform, Motion, SpatialInertia, SymMat3, Transform, Turn, Vec3,
 };
 
 /// How a joint moves.
@@ -39,13 +39,15 @@ impl JointKind {
 /// Where a joint sits in its parent: the constant part of its [`JointTransform`].
 #[derive(Clone, Copy, Debug)]
 pub struct Placement<T> {
-    /// `β`: turn about the parent's z-axis to the common normal of both axes. `None` says that the parent is the body before,
-    /// not a floating root, and that its x-axis is the common normal already.
-    pub beta: Option<Turn<T>>,
+    /// From the parent's frame to the common normal of both axes. `None` says that the parent is the body before, not a
+    /// floating root, and that the common normal is its x-axis.
+    pub branch: Option<Branch<T>>,
+    /// `a`: length of the common normal [m].
+    pub a: T,
     /// `α`: angle from the parent's z-axis to the joint axis, about x.
     pub alpha: Turn<T>,
-    /// Origin of the joint in the parent's axes turned by `β` [m].
-    pub offset: Vec3<T>,
+    /// `d`: along the joint axis from the common normal to the body's origin; at `q = 0`, where the joint slides [m].
+    pub d: T,
     /// Angle about the joint axis at `q = 0` [rad].
     pub zero: T,
 }
@@ -119,7 +121,7 @@ impl<T: Scalar> Body<T> {
         }
     }
 
-    /// The transform from the parent, its axes turned by `β`, to this body, the joint being at `q` and turned by `theta`.
+    /// The transform from the parent, beyond its branch, to this body, the joint being at `q` and turned by `theta`.
     #[inline(always)]
     pub(crate) fn across<F: Scalar<Param = T>>(&self, theta: Turn<F>, q: F) -> JointTransform<F> {
         self.across_as(self.joint, theta, q)
@@ -129,13 +131,11 @@ impl<T: Scalar> Body<T> {
     #[inline(always)]
     pub(crate) fn across_as<F: Scalar<Param = T>>(&self, joint: JointKind, theta: Turn<F>, q: F) -> JointTransform<F> {
         let at = &self.placement;
-        let alpha = at.alpha.map(F::from_param);
-        let mut offset = at.offset.map(F::from_param);
+        let mut d = F::from_param(at.d);
         if joint == JointKind::Prismatic {
-            // Along the joint axis, which is (0, −sin α, cos α) in the parent's axes turned by β.
-            offset = offset.plus_scaled(q, Vec3::new(F::zero(), -alpha.sin, alpha.cos));
+            d += q;
         }
-        JointTransform { alpha, theta, offset }
+        JointTransform { a: F::from_param(at.a), alpha: at.alpha.map(F::from_param), d, theta }
     }
 
     /// Inertia of the body with its rotors at rest.
@@ -146,10 +146,10 @@ impl<T: Scalar> Body<T> {
         inertia
     }
 
-    /// `β`, unless the joint continues a chain.
+    /// The branch, unless the joint continues a chain.
     #[inline(always)]
-    pub(crate) fn beta<F: Scalar<Param = T>>(&self) -> Option<Turn<F>> {
-        self.placement.beta.map(|b| b.map(F::from_param))
+    pub(crate) fn branch<F: Scalar<Param = T>>(&self) -> Option<Branch<F>> {
+        self.placement.branch.map(|b| b.map(F::from_param))
     }
 
     /// The same record in another scalar.
@@ -162,9 +162,10 @@ impl<T: Scalar> Body<T> {
             v_index: self.v_index,
             shared: self.shared,
             placement: Placement {
-                beta: at.beta.map(|b| b.map(&mut f)),
+                branch: at.branch.map(|b| b.map(&mut f)),
+                a: f(at.a),
                 alpha: at.alpha.map(&mut f),
-                offset: at.offset.map(&mut f),
+                d: f(at.d),
                 zero: f(at.zero),
             },
             inertia: self.inertia.map(&mut f),
@@ -187,6 +188,21 @@ impl JointKind {
                 Force { ang: Vec3::new(x.z, y.z, z.z), lin: Vec3::new(ia.lin.xz, ia.lin.yz, ia.lin.zz) }
             }
             _ => Force { ang: Vec3::new(ia.ang.xz, ia.ang.yz, ia.ang.zz), lin: ia.mixed.rows[2] },
+        }
+    }
+
+    /// `I S`.
+    #[inline(always)]
+    pub(crate) fn column_of_rigid<F: Scalar>(self, i: &SpatialInertia<F>) -> Force<F> {
+        let h = i.first_moment;
+        match self {
+            Self::Prismatic => {
+                Force { ang: Vec3::new(h.y, -h.x, F::zero()), lin: Vec3::new(F::zero(), F::zero(), i.mass) }
+            }
+            _ => {
+                let ang = Vec3::new(i.rotational.xz, i.rotational.yz, i.rotational.zz);
+                Force { ang, lin: Vec3::new(-h.y, h.x, F::zero()) }
+            }
         }
     }
 

@@ -18,6 +18,8 @@ pub enum Defect {
     ParentNotBefore,
     /// A floating joint elsewhere than at body 0 on the world, with a drive or friction, or placed: its pose is `q`.
     FloatingNotAtRoot,
+    /// A body on the world beside a floating root: all bodies of one robot hang together.
+    BesideFloating,
     /// A number is infinite or not a number; names which.
     NotFinite(&'static str),
     /// A vector that must have unit length; names which and gives its length.
@@ -67,6 +69,7 @@ impl fmt::Display for Defect {
                      and have neither drive nor friction",
                 )
             }
+            Self::BesideFloating => f.write_str("it hangs on the world, although the robot's root floats: hang it on another body"),
             Self::NotFinite(what) => write!(f, "{what} is not a finite number"),
             Self::NotUnit(what, norm) => write!(f, "{what} has length {norm}, not 1"),
             Self::NotARotation(what) => write!(f, "{what} is not a rotation matrix"),

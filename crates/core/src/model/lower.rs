@@ -5,7 +5,7 @@ use super::{
     RobotSpec, Rotor, Spring, SpringSpec, TransmissionSpec,
 };
 use crate::Scalar;
-use crate::spatial::{Mat3, SpatialInertia, SymMat3, Transform, Turn, Vec3};
+use crate::spatial::{Branch, Mat3, SpatialInertia, SymMat3, Transform, Turn, Vec3};
 
 impl RobotSpec<'_> {
     /// How many spring knots [`RobotSpec::lower`] writes at most.
@@ -46,16 +46,18 @@ impl RobotSpec<'_> {
                         .map_err(|defect| ModelError { body: i, defect })?,
                 ),
             };
+            let placement = placement(
+                tree,
+                i > 0 && spec.parent == Some(i - 1) && bodies[i - 1].joint != JointKind::Floating,
+                spec.placement.pos.norm() + parent_frame.pos.norm() + frame.pos.norm(),
+            );
             bodies[i] = Body {
                 parent: spec.parent.map(|p| p as u16),
                 joint: spec.joint,
                 q_index: iq,
                 v_index: iv,
                 shared: false,
-                placement: placement(
-                    tree,
-                    i > 0 && spec.parent == Some(i - 1) && bodies[i - 1].joint != JointKind::Floating,
-                ),
+                placement,
                 inertia: spec.inertia.seen_from_parent(frame),
                 rotors: SymMat3::zero(),
                 frame,
@@ -64,7 +66,7 @@ impl RobotSpec<'_> {
             };
             // A parent, and a rotor's carrier, that is not simply the body before.
             let carrier = drive.and_then(|d| d.rotor.mount());
-            let parent = spec.parent.filter(|p| p + 1 != i);
+            let parent = spec.parent.filter(|_| placement.branch.is_some());
             let carrier = carrier.filter(|m| m + 1 != i || spec.parent != Some(*m));
             for other in [parent, carrier].into_iter().flatten() {
                 bodies[other].shared = true;
@@ -162,7 +164,7 @@ impl Body<f64> {
             q_index: 0,
             v_index: 0,
             shared: false,
-            placement: Placement { beta: None, alpha: Turn::none(), offset: Vec3::zero(), zero: 0.0 },
+            placement: Placement { branch: None, a: 0.0, alpha: Turn::none(), d: 0.0, zero: 0.0 },
             inertia: SpatialInertia::zero(),
             rotors: SymMat3::zero(),
             frame: Transform::identity(),
@@ -174,19 +176,21 @@ impl Body<f64> {
 
 impl RobotSpec<'_> {
     /// From the frame the recursions use to the user's link frame: z-axis along the joint axis, x-axis along the common
-    /// normal with the axis of the first joint that hangs on the link.
+    /// normal with the axis of the first joint that hangs on the link, origin where that begins.
     fn link_frame(&self, i: usize) -> Transform<f64> {
         let spec = &self.bodies[i];
         if spec.joint == JointKind::Floating {
             return Transform::identity();
         }
         let z = unit(spec.axis);
-        let next = self.bodies.iter().find(|b| b.parent == Some(i)).map(|b| unit(b.placement.rotation() * b.axis));
-        let normal = next.map_or(Vec3::zero(), |next| z.cross(next));
-        // Parallel axes have no common normal but every normal: the coordinate axis least along z makes one, so that an axis
-        // that is a coordinate axis gives a matrix of exact zeros and ones.
+        let (normal, foot) = match self.bodies.iter().find(|b| b.parent == Some(i)) {
+            Some(next) => common_normal(z, next.placement.pos, unit(next.placement.rotation() * next.axis)),
+            None => (Vec3::zero(), 0.0),
+        };
+        // Without a normal, the coordinate axis least along z makes one, so that an axis that is a coordinate axis gives a
+        // matrix of exact zeros and ones.
         let a = z.map(f64::abs);
-        let e = if normal.norm() > PARALLEL {
+        let e = if normal != Vec3::zero() {
             normal
         } else if a.x <= a.y && a.x <= a.z {
             Vec3::new(1.0, 0.0, 0.0)
@@ -197,15 +201,37 @@ impl RobotSpec<'_> {
         };
         let x = unit(e - z.scale(e.dot(z)));
         let turned = Mat3::from_rows(x, z.cross(x), z);
-        Transform { rot: turned.transpose(), pos: Vec3::zero() }
+        Transform { rot: turned.transpose(), pos: Vec3::new(0.0, 0.0, -foot) }
     }
 }
 
 /// Sine of an angle below which axes count as parallel, and a direction as one of the frame's own [–].
 const PARALLEL: f64 = 1e-15;
 
-/// `tree`, from parent to joint at `q = 0`, as `Rz(zero) Rx(α) Rz(β)` and the offset; `β` is zero in a chain.
-fn placement(tree: Transform<f64>, chained: bool) -> Placement<f64> {
+/// Part of a distance below which it counts as none [–].
+const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
+
+/// How many times as far as the next joint a common normal may begin [–]: those of nearly parallel axes begin anywhere, and
+/// inertias about a far point lose digits.
+const NEAR: f64 = 4.0;
+
+/// The common normal of the axis `z` through the origin and of the axis `next` through `p`, of any length, zero if there is no
+/// telling; and where on `z` it begins [m].
+fn common_normal(z: Vec3<f64>, p: Vec3<f64>, next: Vec3<f64>) -> (Vec3<f64>, f64) {
+    let normal = z.cross(next);
+    let sine = normal.norm();
+    if sine > PARALLEL {
+        let foot = p.cross(next).dot(normal) / (sine * sine);
+        return (normal, if f64::abs(foot) <= NEAR * p.norm() { foot } else { 0.0 });
+    }
+    // Parallel axes have many: one through the origin.
+    let across = p - z.scale(z.dot(p));
+    if across.norm() > 1e-9 * p.norm() { (across, 0.0) } else { (Vec3::zero(), 0.0) }
+}
+
+/// `tree`, from parent to joint at `q = 0`, as `Rz(zero) Tz(d) Rx(α) Tx(a)` after a branch, which a joint that continues a chain
+/// does without if the common normal of the axes is the parent's x-axis. `scale` is the size of the numbers behind `tree` [m].
+fn placement(tree: Transform<f64>, chained: bool, scale: f64) -> Placement<f64> {
     let z = tree.rot.rows[2];
     // The joint axis is (sin α sin β, −sin α cos β, cos α) in the parent's axes.
     let across = Scalar::sqrt(z.x * z.x + z.y * z.y);
@@ -221,12 +247,18 @@ fn placement(tree: Transform<f64>, chained: bool) -> Placement<f64> {
         _ if f64::abs(z.z) <= PARALLEL => Turn { sin: if sin < 0.0 { 1.0 } else { -1.0 }, cos: 0.0 },
         _ => Turn { sin: -sin, cos: z.z },
     };
+    // The joint's origin is (a, −d sin α, d cos α) beyond the branch: what is left is the branch's.
+    let exact = |x: f64| if f64::abs(x) <= NEGLIGIBLE * scale { 0.0 } else { x };
+    let origin = beta.z(tree.pos);
+    let d = exact(alpha.cos * origin.z - alpha.sin * origin.y);
+    let shift = Vec3::new(0.0, exact(origin.y + d * alpha.sin), exact(origin.z - d * alpha.cos));
     // The common normal, which is x in the axes turned by β, seen from the joint: (cos zero, −sin zero, 0).
     let normal = tree.rot * beta.z_back(Vec3::new(1.0, 0.0, 0.0));
     Placement {
-        beta: (!chained).then_some(beta),
+        branch: (!chained || shift != Vec3::zero()).then_some(Branch { turn: beta, shift }),
+        a: exact(origin.x),
         alpha,
-        offset: beta.z(tree.pos),
+        d,
         zero: Scalar::atan2(-normal.y, normal.x),
     }
 }

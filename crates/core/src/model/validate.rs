@@ -45,6 +45,9 @@ impl RobotSpec<'_> {
                 Err(Defect::FloatingNotAtRoot)
             };
         }
+        if body.parent.is_none() && i > 0 && self.bodies[0].joint == JointKind::Floating {
+            return Err(Defect::BesideFloating);
+        }
         check_unit("the joint axis", body.axis)?;
         match &body.drive {
             Some(drive) => self.check_drive(body, drive),

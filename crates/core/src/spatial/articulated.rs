@@ -60,6 +60,23 @@ impl<T: Scalar> ArticulatedInertia<T> {
         Self { ang, mixed: Mat3::from_rows(g0, g1, g2), lin: self.lin }
     }
 
+    /// [`ArticulatedInertia::moved`] by `a` along x.
+    #[inline(always)]
+    pub fn moved_along_x(&self, a: T) -> Self {
+        let ([h0, h1, h2], i, m) = (self.mixed.rows, self.ang, self.lin);
+        let g1 = Vec3::new((-a).mul_add(m.xz, h1.x), (-a).mul_add(m.yz, h1.y), (-a).mul_add(m.zz, h1.z));
+        let g2 = Vec3::new(a.mul_add(m.xy, h2.x), a.mul_add(m.yy, h2.y), a.mul_add(m.yz, h2.z));
+        let ang = SymMat3 {
+            xx: i.xx,
+            yy: (-a).mul_add(g1.z + h1.z, i.yy),
+            zz: a.mul_add(g2.y + h2.y, i.zz),
+            xy: (-a).mul_add(h0.z, i.xy),
+            xz: a.mul_add(h0.y, i.xz),
+            yz: a.mul_add(h1.y - g2.z, i.yz),
+        };
+        Self { ang, mixed: Mat3::from_rows(h0, g1, g2), lin: m }
+    }
+
     /// `Iᴬ + I`, the latter of a rigid body.
     #[inline(always)]
     pub fn plus_rigid(&self, i: SpatialInertia<T>) -> Self {

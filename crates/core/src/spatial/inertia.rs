@@ -54,7 +54,8 @@ impl<T: Scalar> SpatialInertia<T> {
         // h' = h + m r,   I' = I + (r·h + r·h') 1 − r hᵀ − h' rᵀ
         let (h, moved) = (self.first_moment, self.first_moment.plus_scaled(self.mass, r));
         let i = self.rotational;
-        let (xx, yy, zz) = (r.x * (h.x + moved.x), r.y * (h.y + moved.y), r.z * (h.z + moved.z));
+        let sum = (h + h).plus_scaled(self.mass, r);
+        let (xx, yy, zz) = (r.x * sum.x, r.y * sum.y, r.z * sum.z);
         let rotational = SymMat3 {
             xx: i.xx + (yy + zz),
             yy: i.yy + (xx + zz),

@@ -1,6 +1,7 @@
 //! Spatial vector algebra (Featherstone, *Rigid Body Dynamics Algorithms*, chapter 2), one type a file.
 
 mod articulated;
+mod branch;
 mod force;
 mod inertia;
 mod joint_transform;
@@ -14,6 +15,7 @@ mod turn;
 mod vector;
 
 pub use articulated::ArticulatedInertia;
+pub use branch::Branch;
 pub use force::Force;
 pub use inertia::SpatialInertia;
 pub use joint_transform::JointTransform;

@@ -61,18 +61,26 @@ impl<T: Scalar> ReleasedInertia<T> {
         let [a, b] = self.mixed;
         let [[hxx, hxy], [hyx, hyy]] = theta.mat_back([[a.x, a.y], [b.x, b.y]]);
         let (hxz, hyz) = theta.pair_back(a.z, b.z);
+        let lin = theta.z_back_sym(self.lin);
+        // Along z by d, the same.
+        let d = x.d;
+        let (gxx, gxy, gxz) = ((-d).mul_add(lin.xy, hxx), (-d).mul_add(lin.yy, hxy), (-d).mul_add(lin.yz, hxz));
+        let (gyx, gyy, gyz) = (d.mul_add(lin.xx, hyx), d.mul_add(lin.xy, hyy), d.mul_add(lin.xz, hyz));
+        let xx = (-d).mul_add(gxy + hxy, xx);
+        let yy = d.mul_add(gyx + hyx, yy);
+        let xy = d.mul_add(hxx - gyy, xy);
         // Rx(α)ᵀ · Rx(α), with zeros in the third row.
         let (s, c) = (x.alpha.sin, x.alpha.cos);
         let ys = yy * s;
         let ang = SymMat3 { xx, yy: (-s).mul_add(ys, yy), zz: s * ys, xy: c * xy, xz: s * xy, yz: c * ys };
-        let (xy, xz) = x.alpha.pair_back(hxy, hxz);
-        let (yy, yz) = x.alpha.pair_back(hyy, hyz);
+        let (xy, xz) = x.alpha.pair_back(gxy, gxz);
+        let (yy, yz) = x.alpha.pair_back(gyy, gyz);
         let mixed = Mat3::from_rows(
-            Vec3::new(hxx, xy, xz),
-            Vec3::new(c * hyx, c * yy, c * yz),
-            Vec3::new(s * hyx, s * yy, s * yz),
+            Vec3::new(gxx, xy, xz),
+            Vec3::new(c * gyx, c * yy, c * yz),
+            Vec3::new(s * gyx, s * yy, s * yz),
         );
-        let lin = x.alpha.x_back_sym(theta.z_back_sym(self.lin));
-        ArticulatedInertia { ang, mixed, lin }.moved(x.offset)
+        // Along x by a.
+        ArticulatedInertia { ang, mixed, lin: x.alpha.x_back_sym(lin) }.moved_along_x(x.a)
     }
 }

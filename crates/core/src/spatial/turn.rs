@@ -146,10 +146,11 @@ impl<T: Scalar> Turn<T> {
     /// `Rᵀ A R` of `A = [[aa, ab], [ab, bb]]` in the plane: entries `aa`, `bb`, `ab`.
     #[inline(always)]
     pub(super) fn sym_back(self, aa: T, bb: T, ab: T) -> (T, T, T) {
-        // With w = s (aa − bb) + 2 c ab:   aa' = aa − s w,   bb' = bb + s w,   ab' = c w − ab
-        let w = self.sin.mul_add(aa - bb, self.cos * (ab + ab));
-        let sw = self.sin * w;
-        (aa - sw, bb + sw, self.cos.mul_add(w, -ab))
+        // aa' = aa − s² (aa − bb) − 2 s c ab,   bb' = bb + s² (aa − bb) + 2 s c ab,   ab' = s c (aa − bb) + (1 − 2 s²) ab
+        let (ss, sc, d) = (self.sin * self.sin, self.sin * self.cos, aa - bb);
+        let (sin_2, cos_2) = (sc + sc, T::one() - (ss + ss));
+        let w = ss.mul_add(d, sin_2 * ab);
+        (aa - w, bb + w, sc.mul_add(d, cos_2 * ab))
     }
 
     /// `Rᵀ A R` of a general `A` in the plane.

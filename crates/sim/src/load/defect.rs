@@ -68,6 +68,7 @@ fn remedy(defect: &Defect) -> &'static str {
     match defect {
         Defect::ParentNotBefore => "list bodies so that parents come first",
         Defect::FloatingNotAtRoot => "let only the root float",
+        Defect::BesideFloating => "hang it on a body of the robot",
         Defect::NotFinite(_) => "give a finite number",
         Defect::NotUnit(..) => "give a direction of length 1",
         Defect::NotARotation(_) => "give an orthonormal, right-handed matrix",
