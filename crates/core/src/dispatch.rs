@@ -6,7 +6,7 @@
 //! names its processor (`-C target-cpu`), another architecture or a build without `std` runs the one kernel it has.
 
 use crate::Scalar;
-use crate::scalar::{ANGLES, Fusible};
+use crate::scalar::Fusible;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// Arithmetic over numbers that are kept as `T`.
@@ -117,16 +117,13 @@ impl<T: Fusible> Scalar for Fused<T> {
         (Self(s), Self(c))
     }
     #[inline(always)]
-    fn sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
-        let plain = T::fused_sin_cos_each(
+    fn sin_cos_each(angle: impl Fn(usize) -> Self, mut keep: impl FnMut(usize, Self, Self)) {
+        T::fused_sin_cos_each(
             #[inline(always)]
             |i| angle(i).0,
+            #[inline(always)]
+            |i, sin, cos| keep(i, Self(sin), Self(cos)),
         );
-        let (mut sin, mut cos) = ([Self::zero(); ANGLES], [Self::zero(); ANGLES]);
-        for i in 0..ANGLES {
-            (sin[i], cos[i]) = (Self(plain.0[i]), Self(plain.1[i]));
-        }
-        (sin, cos)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {

@@ -144,12 +144,11 @@ macro_rules! lanes_of {
                 (Self(sin), Self(cos))
             }
             #[inline(always)]
-            fn fused_sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
-                let (mut sin, mut cos) = ([Self::splat(0.0); ANGLES], [Self::splat(0.0); ANGLES]);
+            fn fused_sin_cos_each(angle: impl Fn(usize) -> Self, mut keep: impl FnMut(usize, Self, Self)) {
                 for i in 0..ANGLES {
-                    (sin[i], cos[i]) = angle(i).fused_sin_cos();
+                    let (sin, cos) = angle(i).fused_sin_cos();
+                    keep(i, sin, cos);
                 }
-                (sin, cos)
             }
         }
     };

@@ -41,14 +41,13 @@ pub trait Scalar:
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle [rad].
     fn sin_cos(self) -> (Self, Self);
-    /// Sines and cosines of several angles [rad], which many processors compute side by side.
+    /// Sines and cosines of several angles [rad], which many processors compute side by side: `keep` gets those of `angle(i)`.
     #[inline(always)]
-    fn sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
-        let (mut sin, mut cos) = ([Self::zero(); ANGLES], [Self::zero(); ANGLES]);
+    fn sin_cos_each(angle: impl Fn(usize) -> Self, mut keep: impl FnMut(usize, Self, Self)) {
         for i in 0..ANGLES {
-            (sin[i], cos[i]) = angle(i).sin_cos();
+            let (sin, cos) = angle(i).sin_cos();
+            keep(i, sin, cos);
         }
-        (sin, cos)
     }
     /// Angle [rad] of the point with ordinate `self` and abscissa `x`, in `(−π, π]`.
     fn atan2(self, x: Self) -> Self;
@@ -84,7 +83,7 @@ pub trait Fusible: Scalar {
     /// [`Scalar::sin_cos`] with it.
     fn fused_sin_cos(self) -> (Self, Self);
     /// [`Scalar::sin_cos_each`] with it.
-    fn fused_sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]);
+    fn fused_sin_cos_each(angle: impl Fn(usize) -> Self, keep: impl FnMut(usize, Self, Self));
 }
 
 macro_rules! float_scalar {
@@ -115,8 +114,11 @@ macro_rules! float_scalar {
                 (sin, cos)
             }
             #[inline(always)]
-            fn sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
-                crate::trig::$trig::sin_cos(angle)
+            fn sin_cos_each(angle: impl Fn(usize) -> Self, mut keep: impl FnMut(usize, Self, Self)) {
+                let (sin, cos) = crate::trig::$trig::sin_cos::<ANGLES>(angle);
+                for i in 0..ANGLES {
+                    keep(i, sin[i], cos[i]);
+                }
             }
             #[inline]
             fn atan2(self, x: Self) -> Self {
@@ -151,8 +153,11 @@ macro_rules! float_scalar {
                 (sin, cos)
             }
             #[inline(always)]
-            fn fused_sin_cos_each(angle: impl Fn(usize) -> Self) -> ([Self; ANGLES], [Self; ANGLES]) {
-                crate::trig::$trig::sin_cos_in::<crate::dispatch::Fused<Self>, ANGLES>(angle)
+            fn fused_sin_cos_each(angle: impl Fn(usize) -> Self, mut keep: impl FnMut(usize, Self, Self)) {
+                let (sin, cos) = crate::trig::$trig::sin_cos_in::<crate::dispatch::Fused<Self>, ANGLES>(angle);
+                for i in 0..ANGLES {
+                    keep(i, sin[i], cos[i]);
+                }
             }
         }
     };

@@ -47,8 +47,9 @@ fn angles_side_by_side_equal_angles_alone() {
     let x = [0.1, -3.0, 1e3, 2e6, -7.5e5, 1e300, 6.0, -1e-9];
     let alone = x.map(Scalar::sin_cos);
     for (group, alone) in x.chunks(ANGLES).zip(alone.chunks(ANGLES)) {
-        let (s, c) = <f64 as Scalar>::sin_cos_each(|i| group[i]);
-        assert!(s.into_iter().zip(c).eq(alone.iter().copied()));
+        let mut each = Vec::new();
+        <f64 as Scalar>::sin_cos_each(|i| group[i], |i, s, c| each.push((i, (s, c))));
+        assert!(each.into_iter().eq(alone.iter().copied().enumerate()));
     }
     let (s, c) = Lanes(x).sin_cos();
     assert_eq!((s.0, c.0), (alone.map(|p| p.0), alone.map(|p| p.1)));

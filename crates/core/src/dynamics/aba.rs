@@ -14,13 +14,14 @@
 //!
 //! Cost O(n). No allocation, no panic, no branch on values.
 
+use super::aba_base::{Base, centripetal, velocity_force};
 use super::drive_torque::{JointState, drives, rotor_acceleration, rotor_couple, rotor_torque};
-use super::tree::{RootMotion, Tree, first, store_first, turns};
+use super::tree::{Tree, first, store_first, turns};
 use super::{AbaScratch, External, Forward, State};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
 use crate::model::{Body, JointKind, Model, SizeError};
-use crate::spatial::{ArticulatedInertia, Force, Motion, SpatialInertia, Vec3};
+use crate::spatial::{ArticulatedInertia, Force, Motion, Vec3};
 
 /// Accelerations of all joints and motors from state, motor torques and external loads.
 ///
@@ -81,39 +82,24 @@ impl<T: Scalar> Aba<'_, '_, T> {
 
         // At each joint for itself: τ on its link side, τ − τ_J on its rotor.
         for i in 0..n {
-            let state = JointState {
-                q: F::load(q[i]),
-                qd: F::load(qd[i]),
-                theta: F::load(theta[i]),
-                thetad: F::load(thetad[i]),
-            };
+            let (q, qd, theta, thetad) = (F::load(q[i]), F::load(qd[i]), F::load(theta[i]), F::load(thetad[i]));
             let load = tau_ext.map_or(F::zero(), |tau| F::load(tau[i]));
-            let known = drives(&joints[i], state, F::load(motor[i]), load, model.knots);
+            let known = drives(&joints[i], JointState { q, qd, theta, thetad }, F::load(motor[i]), load, model.knots);
             scratch[i].u = known.on_link.store();
             scratch[i].on_rotor = known.on_rotor.store();
             tau_j[i] = known.tau_j.store();
         }
 
-        // The base: at rest, or a root moving freely.
-        let lift = -model.gravity.map(F::from_param);
-        let (mut base_omega, mut base_p, mut base_ia) = (Vec3::zero(), Force::zero(), ArticulatedInertia::zero());
-        let free = tree.root.map(|root| (root, RootMotion::<F>::of(state.q, state.qd)));
-        if let Some((root, at)) = &free {
-            base_omega = at.v.ang;
-            base_ia = root.inertia.map(F::from_param).into();
-            base_p = velocity_force(root.inertia.map(F::from_param), base_omega);
-            if let Some(wrench) = ext.wrenches.first() {
-                base_p -= root.frame.map(F::from_param).inv_force(wrench.map(F::load));
-            }
-        }
+        let mut base = Base::<F>::of(&tree, state.q, state.qd, ext);
 
         // Pass 1, base to tips: velocities, and forces that are known from the state.
+        let omega_0 = base.omega;
         let omega_at = |b: Option<u16>, scratch: &[AbaScratch<T>]| {
-            tree.joint(b).and_then(|b| scratch.get(b)).map_or(base_omega, |s| s.omega.map(F::load))
+            tree.joint(b).and_then(|b| scratch.get(b)).map_or(omega_0, |s| s.omega.map(F::load))
         };
         // Some compilers do not see that these have `n` entries; to ask costs less than to panic.
         let at_joint = |all: &[T], i: usize| all.get(i).map_or(F::zero(), |x| F::load(*x));
-        let mut previous = base_omega;
+        let mut previous = omega_0;
         for i in 0..n {
             let body = &joints[i];
             let joint = kind(body);
@@ -152,7 +138,7 @@ impl<T: Scalar> Aba<'_, '_, T> {
                 if !beside {
                     match tree.joint(drive.rotor.mount).and_then(|b| scratch.get_mut(b)) {
                         Some(carrier) => carrier.p.ang = (carrier.p.ang.map(F::load) + couple).map(F::store),
-                        None => base_p.ang += couple,
+                        None => base.p.ang += couple,
                     }
                 }
             }
@@ -230,22 +216,18 @@ impl<T: Scalar> Aba<'_, '_, T> {
                         parent.ia = (parent.ia.map(F::load) + ia).map(F::store);
                         parent.p = (parent.p.map(F::load) + p).map(F::store);
                     }
-                    None => (base_ia, base_p) = (base_ia + ia, base_p + p),
+                    None => (base.ia, base.p) = (base.ia + ia, base.p + p),
                 }
                 break;
             }
         }
 
         // Pass 3, base to tips: accelerations.
-        let mut base_a = Motion { ang: Vec3::zero(), lin: lift };
-        if let Some((_, at)) = &free {
-            // a = Iᴬ⁻¹ (τ − pᴬ);   as spatial acceleration, without gravity: q̈ = a − [0; E a_0 + ω × v]
-            let motor = Force::from(first::<T, F, 6>(tau));
-            base_a = base_ia.solve(motor + Force::from(first::<T, F, 6>(ext.tau)) - base_p);
-            let free = Motion { ang: base_a.ang, lin: base_a.lin - at.rot * lift - at.v.ang.cross(at.v.lin) };
+        let (base_a, free) = base.acceleration(-model.gravity.map(F::from_param), tau, ext);
+        if let Some(free) = free {
             store_first(root_qdd, free.to_array());
             store_first(root_thetadd, free.to_array());
-            store_first(root_tau_j, motor.to_array());
+            store_first(root_tau_j, first::<T, F, 6>(tau));
         }
         let accel_at = |b: Option<u16>, scratch: &[AbaScratch<T>]| {
             tree.joint(b).and_then(|b| scratch.get(b)).map_or(base_a, |s| s.a.map(F::load))
@@ -292,16 +274,4 @@ impl<T: Scalar> Aba<'_, '_, T> {
         }
         Ok(())
     }
-}
-
-/// `ω × (ω × r)`.
-#[inline(always)]
-fn centripetal<T: Scalar>(omega: Vec3<T>, r: Vec3<T>) -> Vec3<T> {
-    omega.scale(omega.dot(r)).plus_scaled(-omega.dot(omega), r)
-}
-
-/// Force that a body needs for its angular velocity alone: `[ω × I ω; ω × (ω × h)]`.
-#[inline(always)]
-fn velocity_force<T: Scalar>(body: SpatialInertia<T>, omega: Vec3<T>) -> Force<T> {
-    Force { ang: omega.cross(body.rotational * omega), lin: centripetal(omega, body.first_moment) }
 }

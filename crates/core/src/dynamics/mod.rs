@@ -6,6 +6,7 @@
 //! with an elastic transmission; everywhere else the motor turns with the joint.
 
 mod aba;
+mod aba_base;
 mod aba_scratch;
 mod crba;
 mod drive_torque;

@@ -14,36 +14,23 @@ pub(super) struct Moving<T> {
     pub(super) accel: Motion<T>,
 }
 
-/// Accelerations in a turning body: `Ω = α× + ω ω× `, so that the point at `r` accelerates by `Ω r` more than the origin.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct AccelerationField<T> {
-    rows: Mat3<T>,
-    /// `ω_y² − ω_z²`, `ω_z² − ω_x²`, `ω_x² − ω_y²`
-    squares: Vec3<T>,
-    /// `ω_y ω_z`, `ω_z ω_x`, `ω_x ω_y`
-    products: Vec3<T>,
-}
-
 impl<T: Scalar> Moving<T> {
     #[inline(always)]
     pub(super) fn new(omega: Vec3<T>, accel: Motion<T>) -> Self {
         Self { omega, accel }
     }
 
+    /// `Ω = α× + ω× ω×`: the point at `r` accelerates by `Ω r` more than the origin.
     #[inline(always)]
-    pub(super) fn field(&self) -> AccelerationField<T> {
+    pub(super) fn field(&self) -> Mat3<T> {
         let (w, a) = (self.omega, self.accel.ang);
         let (xx, yy, zz) = (w.x * w.x, w.y * w.y, w.z * w.z);
         let (yz, zx, xy) = (w.y * w.z, w.z * w.x, w.x * w.y);
-        AccelerationField {
-            rows: Mat3::from_rows(
-                Vec3::new(-(yy + zz), xy - a.z, zx + a.y),
-                Vec3::new(xy + a.z, -(zz + xx), yz - a.x),
-                Vec3::new(zx - a.y, yz + a.x, -(xx + yy)),
-            ),
-            squares: Vec3::new(yy - zz, zz - xx, xx - yy),
-            products: Vec3::new(yz, zx, xy),
-        }
+        Mat3::from_rows(
+            Vec3::new(-(yy + zz), xy - a.z, zx + a.y),
+            Vec3::new(xy + a.z, -(zz + xx), yz - a.x),
+            Vec3::new(zx - a.y, yz + a.x, -(xx + yy)),
+        )
     }
 
     #[inline(always)]
@@ -64,8 +51,8 @@ impl<T: Scalar> Moving<T> {
 
     /// The same at the point `r`: `a + Ω r`.
     #[inline(always)]
-    pub(super) fn at(self, field: &AccelerationField<T>, r: Vec3<T>) -> Self {
-        Self::new(self.omega, Motion { ang: self.accel.ang, lin: self.accel.lin + field.rows * r })
+    pub(super) fn at(self, field: Mat3<T>, r: Vec3<T>) -> Self {
+        Self::new(self.omega, Motion { ang: self.accel.ang, lin: self.accel.lin + field * r })
     }
 
     /// The body across a joint of velocity `qd` and acceleration `qdd` that sits where `self` is said.
@@ -88,22 +75,27 @@ impl<T: Scalar> Moving<T> {
         }
     }
 
-    /// Force about its origin that a body of this inertia needs.
+    /// Force about its origin that a body of this inertia needs; `o` is [`Moving::field`].
     #[inline(always)]
-    pub(super) fn force_on(&self, field: &AccelerationField<T>, body: SpatialInertia<T>) -> Force<T> {
-        // f = m a + Ω h,   n = I α + ω × I ω + h × a, the first two by entries of Ω
-        let (h, i, a) = (body.first_moment, body.rotational, self.accel);
-        let (o, squares, products) = (field.rows.rows, field.squares, field.products);
+    pub(super) fn force_on(&self, o: Mat3<T>, body: &SpatialInertia<T::Param>) -> Force<T> {
+        // f = m a + Ω h
+        let (h, a) = (body.first_moment.map(T::from_param), self.accel.lin);
+        let lin = (o * h).plus_scaled(T::from_param(body.mass), a);
+        // n = I α + ω × I ω + h × a, whose first part is that of Ω Σ − (Ω Σ)ᵀ about each axis, where Σ = ½ tr(I) 1 − I
+        let i = body.rotational;
+        let half = (i.xx + i.yy + i.zz) * Scalar::from_f64(0.5);
+        let sigma = Vec3::new(half - i.xx, half - i.yy, half - i.zz).map(T::from_param);
+        let (i, [x, y, z]) = (i.map(T::from_param), o.rows);
         let n = Vec3::new(
-            i.xx.mul_add(a.ang.x, (-i.xy).mul_add(o[2].x, i.xz * o[1].x)),
-            i.yy.mul_add(a.ang.y, (-i.yz).mul_add(o[0].y, i.xy * o[2].y)),
-            i.zz.mul_add(a.ang.z, (-i.xz).mul_add(o[1].z, i.yz * o[0].z)),
+            sigma.y.mul_add(z.y, (-sigma.z).mul_add(y.z, i.yz * (y.y - z.z))),
+            sigma.z.mul_add(x.z, (-sigma.x).mul_add(z.x, i.xz * (z.z - x.x))),
+            sigma.x.mul_add(y.x, (-sigma.y).mul_add(x.y, i.xy * (x.x - y.y))),
         );
-        let gyro = Vec3::new(
-            i.yz.mul_add(squares.x, (i.zz - i.yy) * products.x),
-            i.xz.mul_add(squares.y, (i.xx - i.zz) * products.y),
-            i.xy.mul_add(squares.z, (i.yy - i.xx) * products.z),
+        let n = Vec3::new(
+            i.xz.mul_add(y.x, (-i.xy).mul_add(z.x, n.x)),
+            i.xy.mul_add(z.y, (-i.yz).mul_add(x.y, n.y)),
+            i.yz.mul_add(x.z, (-i.xz).mul_add(y.z, n.z)),
         );
-        Force { ang: h.cross_plus(a.lin, n + gyro), lin: (field.rows * h).plus_scaled(body.mass, a.lin) }
+        Force { ang: h.cross_plus(a, n), lin }
     }
 }

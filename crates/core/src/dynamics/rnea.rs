@@ -119,7 +119,7 @@ impl<T: Scalar> Rnea<'_, '_, T> {
             let asked = Motion::from(first::<T, F, 6>(accel.qdd));
             let lin = at.v.ang.cross_plus(at.v.lin, asked.lin) + at.rot * lift;
             base = Moving::new(at.v.ang, Motion { ang: asked.ang, lin });
-            base_force = base.force_on(&base.field(), root.inertia.map(F::from_param));
+            base_force = base.force_on(base.field(), &root.inertia);
             if let Some(wrench) = ext.wrenches.first() {
                 base_force -= root.frame.map(F::from_param).inv_force(wrench.map(F::load));
             }
@@ -136,18 +136,18 @@ impl<T: Scalar> Rnea<'_, '_, T> {
             let (q, qd, qdd) = (F::load(q[i]), F::load(qd[i]), F::load(qdd[i]));
             let x = body.across_as(kind(body), scratch[i].theta.map(F::load), q);
             let (parent, turned) = match body.branch() {
-                None => (previous.0, previous.0.at(&previous.1, x.offset())),
+                None => (previous.0, previous.0.at(previous.1, x.offset())),
                 Some(branch) => {
                     let parent = at_body(body.parent, scratch);
                     let turned = parent.turned(branch.turn);
-                    (parent, turned.at(&turned.field(), branch.shift + x.offset()))
+                    (parent, turned.at(turned.field(), branch.shift + x.offset()))
                 }
             };
             let moving = turned.across(&x, kind(body), qd, qdd);
             let field = moving.field();
 
             // f = m a + α × h + ω × (ω × h) − f_ext,   n = I α + ω × I ω + h × a − n_ext
-            let mut f = moving.force_on(&field, body.inertia.map(F::from_param));
+            let mut f = moving.force_on(field, &body.inertia);
             if let Some(wrenches) = wrenches {
                 f -= body.frame.map(F::from_param).inv_force(wrenches[i].map(F::load));
             }

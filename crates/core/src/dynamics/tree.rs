@@ -132,13 +132,12 @@ pub(super) fn turns<T: Scalar, F: Over<T>, S>(
         let scratch = scratch.get_mut(from..).unwrap_or(&mut []);
         match (joints.first_chunk::<ANGLES>(), q.first_chunk::<ANGLES>(), scratch.first_chunk_mut::<ANGLES>()) {
             (Some(joints), Some(q), Some(scratch)) => {
-                let (sin, cos) = F::sin_cos_each(
+                F::sin_cos_each(
                     #[inline(always)]
                     |k| angle(&joints[k], F::load(q[k])),
+                    #[inline(always)]
+                    |k, sin, cos| keep(&mut scratch[k], Turn { sin: sin.store(), cos: cos.store() }),
                 );
-                for k in 0..ANGLES {
-                    keep(&mut scratch[k], Turn { sin: sin[k].store(), cos: cos[k].store() });
-                }
             }
             _ => {
                 for ((joint, q), s) in joints.iter().zip(q).zip(scratch) {
