@@ -182,3 +182,18 @@ fn spring_table_is_monotone_and_conservative() {
     }
     close(spring.energy(0.0, model.knots()), 0.0);
 }
+
+/// One robot hangs together: beside a floating root nothing stands on the world.
+#[test]
+fn a_body_beside_a_floating_root_is_refused() {
+    let mut root = link(None, [0.0, 0.0, 1.0], [0.0; 3], [0.1, 0.0, 0.0]);
+    root.joint = JointKind::Floating;
+    let child = |parent| link(parent, [0.0, 1.0, 0.0], [0.2, 0.0, 0.0], [0.1, 0.0, 0.0]);
+    let defect = |parent| {
+        let bodies = [root, child(parent)];
+        let spec = RobotSpec { bodies: &bodies, spring_tables: &[], gravity: [0.0, 0.0, -9.81].into() };
+        spec.validate().err().map(|e| (e.body, matches!(e.defect, Defect::BesideFloating)))
+    };
+    assert_eq!(defect(Some(0)), None);
+    assert_eq!(defect(None), Some((1, true)));
+}

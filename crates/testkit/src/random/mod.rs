@@ -129,9 +129,22 @@ impl Dice {
         [v.x, v.y, v.z].into()
     }
 
+    /// Right angles as files have them: to so many digits.
+    fn quarter_turns(&mut self) -> Mat3<f64> {
+        let [roll, pitch, yaw] = [(); 3].map(|()| {
+            let error = self.sign() * self.magnitude(1e-17, 1e-2);
+            (self.below(4) as f64).mul_add(core::f64::consts::FRAC_PI_2, error)
+        });
+        Mat3::from_rpy(roll, pitch, yaw)
+    }
+
     fn placement(&mut self, size: f64) -> Transform<f64> {
         let p = self.vector(size);
-        let rotation = if self.chance(0.3) { Mat3::identity() } else { matrix(self.rotation()) };
+        let rotation = match self.within(0.0, 1.0) {
+            x if x < 0.3 => Mat3::identity(),
+            x if x < 0.5 => self.quarter_turns(),
+            _ => matrix(self.rotation()),
+        };
         Transform::from_pose(rotation, [p.x, p.y, p.z].into())
     }
 }
