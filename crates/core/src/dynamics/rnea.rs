@@ -130,13 +130,14 @@ impl<T: Scalar> Rnea<'_, '_, T> {
         };
 
         // Pass 1, base to tips: motion, and the force each body needs.
-        let mut previous = (base, base.field());
+        // The body before, its acceleration already that of the point where the next joint of the chain sits.
+        let mut previous = base;
         for i in 0..n {
             let body = &joints[i];
-            let (q, qd, qdd) = (F::load(q[i]), F::load(qd[i]), F::load(qdd[i]));
-            let x = body.across_as(kind(body), scratch[i].theta.map(F::load), q);
+            let (at, qd, qdd) = (F::load(q[i]), F::load(qd[i]), F::load(qdd[i]));
+            let x = body.across_as(kind(body), scratch[i].theta.map(F::load), at);
             let (parent, turned) = match body.branch() {
-                None => (previous.0, previous.0.at(previous.1, x.offset())),
+                None => (previous, previous),
                 Some(branch) => {
                     let parent = at_body(body.parent, scratch);
                     let turned = parent.turned(branch.turn);
@@ -181,7 +182,13 @@ impl<T: Scalar> Rnea<'_, '_, T> {
             if body.shared {
                 scratch[i].moving = moving.map(F::store);
             }
-            previous = (moving, field);
+            previous = match joints.get(i + 1) {
+                Some(next) if next.placement.branch.is_none() => {
+                    let q = q.get(i + 1).map_or(F::zero(), |q| F::load(*q));
+                    moving.at(field, next.across_as(kind(next), Turn::none(), q).offset())
+                }
+                _ => moving,
+            };
         }
 
         // Pass 2, tips to base: forces across the joints.
