@@ -16,7 +16,7 @@
 
 use super::aba_base::{Base, centripetal, velocity_force};
 use super::drive_torque::{JointState, drives, rotor_acceleration, rotor_couple, rotor_torque};
-use super::tree::{Tree, first, store_first, turns};
+use super::tree::{Tree, entry, first, store_first, turns};
 use super::{AbaScratch, External, Forward, State};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
@@ -82,9 +82,9 @@ impl<T: Scalar> Aba<'_, '_, T> {
 
         // At each joint for itself: τ on its link side, τ − τ_J on its rotor.
         for i in 0..n {
-            let (q, qd, theta, thetad) = (F::load(q[i]), F::load(qd[i]), F::load(theta[i]), F::load(thetad[i]));
-            let load = tau_ext.map_or(F::zero(), |tau| F::load(tau[i]));
-            let known = drives(&joints[i], JointState { q, qd, theta, thetad }, F::load(motor[i]), load, model.knots);
+            let (q, qd, theta, thetad) = (entry(q, i), entry(qd, i), entry(theta, i), entry(thetad, i));
+            let load = tau_ext.map_or(F::zero(), |tau| entry(tau, i));
+            let known = drives(&joints[i], JointState { q, qd, theta, thetad }, entry(motor, i), load, model.knots);
             scratch[i].u = known.on_link.store();
             scratch[i].on_rotor = known.on_rotor.store();
             tau_j[i] = known.tau_j.store();
@@ -97,8 +97,6 @@ impl<T: Scalar> Aba<'_, '_, T> {
         let omega_at = |b: Option<u16>, scratch: &[AbaScratch<T>]| {
             tree.joint(b).and_then(|b| scratch.get(b)).map_or(omega_0, |s| s.omega.map(F::load))
         };
-        // Some compilers do not see that these have `n` entries; to ask costs less than to panic.
-        let at_joint = |all: &[T], i: usize| all.get(i).map_or(F::zero(), |x| F::load(*x));
         let mut previous = omega_0;
         for i in 0..n {
             let body = &joints[i];
@@ -132,7 +130,7 @@ impl<T: Scalar> Aba<'_, '_, T> {
             if let Some(drive) = &body.drive {
                 let beside = drive.rotor.mount == body.parent;
                 let omega = if beside { parent } else { omega_at(drive.rotor.mount, scratch) };
-                let spin = drive.spin(qd, at_joint(thetad, i));
+                let spin = drive.spin(qd, entry(thetad, i));
                 let couple = rotor_couple(drive, spin, omega, F::load(scratch[i].on_rotor));
                 scratch[i].couple = couple.map(F::store);
                 if !beside {

@@ -150,9 +150,11 @@ impl<T: Scalar> Crba<'_, '_, T> {
             }
 
             let own = kind(body).column_of_rigid(&composite);
-            let Some(row) = m.get_mut((lead + i) * nv..).and_then(|m| m.get_mut(..nv)) else { break };
-            let (to_root, row) = row.split_at_mut(lead);
-            row[i] = (kind(body).along(own) + body.rigid_reflected_inertia()).store();
+            let row = m.get_mut((lead + i) * nv..).and_then(|m| m.split_at_mut_checked(lead));
+            let Some((to_root, row)) = row else { break };
+            if let Some(entry) = row.get_mut(i) {
+                *entry = (kind(body).along(own) + body.rigid_reflected_inertia()).store();
+            }
 
             let mut f = scratch[i].pose.map(F::load).inv_force(own);
             let rigid = body.rigid_rotor();
@@ -182,9 +184,11 @@ impl<T: Scalar> Crba<'_, '_, T> {
         }
         // M = Mᵀ
         for i in 1..nv {
-            let (above, below) = m.split_at_mut(i * nv);
-            for (column, entry) in above.chunks_exact_mut(nv).zip(below) {
-                column[i] = *entry;
+            let Some((above, below)) = m.split_at_mut_checked(i * nv) else { break };
+            for (j, entry) in below.iter().enumerate().take(i) {
+                if let Some(mirrored) = above.get_mut(j * nv + i) {
+                    *mirrored = *entry;
+                }
             }
         }
         Ok(())

@@ -13,7 +13,7 @@
 
 use super::drive_torque::transmission_error;
 use super::moving::Moving;
-use super::tree::{RootMotion, Tree, first, store_first, turns};
+use super::tree::{RootMotion, Tree, entry, first, store_first, turns};
 use super::{Acceleration, External, Inverse, State};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
@@ -194,30 +194,30 @@ impl<T: Scalar> Rnea<'_, '_, T> {
         // Pass 2, tips to base: forces across the joints.
         let mut incoming = Force::zero();
         for i in (0..n).rev() {
-            let (body, s) = (&joints[i], &scratch[i]);
+            let (Some(body), Some(s)) = (joints.get(i), scratch.get(i)) else { break };
             let f = s.f.map(F::load) + incoming;
 
             // τ_J = Sᵀ f + f_l(q̇) − τ_ext,   τ = (1 − e') τ_J + N ḣ + N f_m
-            let mut joint = kind(body).along(f) + body.friction.torque(F::load(qd[i]));
+            let mut joint = kind(body).along(f) + body.friction.torque(entry::<T, F>(qd, i));
             if let Some(tau_ext) = tau_ext {
-                joint -= F::load(tau_ext[i]);
+                joint -= entry::<T, F>(tau_ext, i);
             }
             let mut motor = joint;
             if let Some(Drive { rotor, elastic }) = &body.drive {
                 if let Some(elastic) = elastic {
-                    motor = (F::one() - transmission_error(elastic, rotor, F::load(theta[i])).1) * joint;
+                    motor = (F::one() - transmission_error(elastic, rotor, entry(theta, i)).1) * joint;
                 }
                 motor += F::load(s.on_rotor);
             }
-            tau_j[i] = joint.store();
-            tau[i] = motor.store();
+            let (Some(on_joint), Some(on_motor)) = (tau_j.get_mut(i), tau.get_mut(i)) else { break };
+            (*on_joint, *on_motor) = (joint.store(), motor.store());
 
             // f_p += Xᵀ f and the rotor's couple; the fixed world bears whatever comes
             incoming = Force::zero();
             if body.parent.is_none() {
                 continue;
             }
-            let x = body.across_as(kind(body), s.theta.map(F::load), F::load(q[i]));
+            let x = body.across_as(kind(body), s.theta.map(F::load), entry(q, i));
             let mut on_parent = x.inv_force(f);
             if let Some(branch) = body.branch() {
                 on_parent = branch.inv_force(on_parent);

@@ -92,8 +92,8 @@ impl<'a, P: Scalar> Tree<'a, P> {
 /// What follows the first `lead` of `lead + n` entries.
 #[inline(always)]
 fn rest<'s, X>(argument: &'static str, all: &'s [X], lead: usize, n: usize) -> Result<&'s [X], SizeError> {
-    match all.get(lead..lead + n) {
-        Some(rest) if all.len() == lead + n => Ok(rest),
+    match all.get(lead..) {
+        Some(rest) if rest.len() == n => Ok(rest),
         _ => Err(SizeError { argument, expected: lead + n, given: all.len() }),
     }
 }
@@ -113,6 +113,12 @@ fn split<'s, X>(
         Some(rest) if given - lead == n => Ok((root, rest)),
         _ => Err(error),
     }
+}
+
+/// Entry `i` of a slice that has one: some compilers do not see that it does, and to ask costs less than to panic.
+#[inline(always)]
+pub(super) fn entry<T: Scalar, F: Over<T>>(all: &[T], i: usize) -> F {
+    all.get(i).map_or(F::zero(), |x| F::load(*x))
 }
 
 /// Sines and cosines of all joints' angles, several at a time.
