@@ -64,10 +64,30 @@ mod x86_64 {
             kernel.run::<T>()
         }
     }
+
+    /// What [`on_best_instructions`] takes on this machine.
+    pub fn chosen_instructions() -> Option<&'static str> {
+        if x86::V4::try_new().is_some() {
+            Some("AVX-512")
+        } else if x86::V3::try_new().is_some() {
+            Some("AVX2 and FMA")
+        } else {
+            None
+        }
+    }
 }
 
 #[cfg(all(feature = "std", target_arch = "x86_64", not(target_feature = "fma")))]
 pub(crate) use x86_64::on_best_instructions;
+
+/// The instructions that algorithms choose at run time on this machine; `None` where they run on those that the program is
+/// compiled for.
+pub fn chosen_instructions() -> Option<&'static str> {
+    #[cfg(all(feature = "std", target_arch = "x86_64", not(target_feature = "fma")))]
+    return x86_64::chosen_instructions();
+    #[cfg(not(all(feature = "std", target_arch = "x86_64", not(target_feature = "fma"))))]
+    None
+}
 
 /// With the instructions this program is compiled for.
 #[cfg(not(all(feature = "std", target_arch = "x86_64", not(target_feature = "fma"))))]

@@ -36,7 +36,10 @@ macro_rules! sin_cos {
                 }
                 if far {
                     for i in 0..N {
-                        (sin[i], cos[i]) = any_size(angle(i));
+                        let x = angle(i);
+                        if is_far(x) {
+                            (sin[i], cos[i]) = any_size(x);
+                        }
                     }
                 }
                 (sin, cos)
@@ -51,7 +54,7 @@ macro_rules! sin_cos {
             #[cold]
             #[inline(never)]
             fn any_size(x: $float) -> ($float, $float) {
-                if is_far(x) { $far(x) } else { near_zero::<$float>(x) }
+                $far(x)
             }
 
             #[inline(always)]

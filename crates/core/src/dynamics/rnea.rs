@@ -129,13 +129,13 @@ impl<T: Scalar> Rnea<'_, '_, T> {
             tree.joint(b).and_then(|b| scratch.get(b)).map_or(base, |s| s.moving.map(F::load))
         };
 
-        // Pass 1, base to tips: motion, and the force each body needs.
-        // The body before, its acceleration already that of the point where the next joint of the chain sits.
+        // Pass 1, base to tips: motion, and the force each body needs. `previous` accelerates as the body before does where the
+        // next joint of its chain sits.
         let mut previous = base;
         for i in 0..n {
             let body = &joints[i];
-            let (at, qd, qdd) = (F::load(q[i]), F::load(qd[i]), F::load(qdd[i]));
-            let x = body.across_as(kind(body), scratch[i].theta.map(F::load), at);
+            let (qd, qdd) = (F::load(qd[i]), F::load(qdd[i]));
+            let x = body.across_as(kind(body), scratch[i].theta.map(F::load), entry(q, i));
             let (parent, turned) = match body.branch() {
                 None => (previous, previous),
                 Some(branch) => {
@@ -184,8 +184,7 @@ impl<T: Scalar> Rnea<'_, '_, T> {
             }
             previous = match joints.get(i + 1) {
                 Some(next) if next.placement.branch.is_none() => {
-                    let q = q.get(i + 1).map_or(F::zero(), |q| F::load(*q));
-                    moving.at(field, next.across_as(kind(next), Turn::none(), q).offset())
+                    moving.at(field, next.across_as(kind(next), Turn::none(), entry(q, i + 1)).offset())
                 }
                 _ => moving,
             };

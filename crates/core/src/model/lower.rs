@@ -211,6 +211,9 @@ const PARALLEL: f64 = 1e-15;
 /// Part of a distance below which it counts as none [–].
 const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 
+/// Distance of parallel axes, as part of that of the joints on them, below which its direction is left to rounding [–].
+const ALIGNED: f64 = 1e-9;
+
 /// How many times as far as the next joint a common normal may begin [–]: those of nearly parallel axes begin anywhere, and
 /// inertias about a far point lose digits.
 const NEAR: f64 = 4.0;
@@ -226,7 +229,7 @@ fn common_normal(z: Vec3<f64>, p: Vec3<f64>, next: Vec3<f64>) -> (Vec3<f64>, f64
     }
     // Parallel axes have many: one through the origin.
     let across = p - z.scale(z.dot(p));
-    if across.norm() > 1e-9 * p.norm() { (across, 0.0) } else { (Vec3::zero(), 0.0) }
+    if across.norm() > ALIGNED * p.norm() { (across, 0.0) } else { (Vec3::zero(), 0.0) }
 }
 
 /// `tree`, from parent to joint at `q = 0`, as `Rz(zero) Tz(d) Rx(α) Tx(a)` after a branch, which a joint that continues a chain

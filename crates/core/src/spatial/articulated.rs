@@ -77,6 +77,23 @@ impl<T: Scalar> ArticulatedInertia<T> {
         Self { ang, mixed: Mat3::from_rows(h0, g1, g2), lin: m }
     }
 
+    /// [`ArticulatedInertia::moved`] by `d` along z.
+    #[inline(always)]
+    pub fn moved_along_z(&self, d: T) -> Self {
+        let ([h0, h1, h2], i, m) = (self.mixed.rows, self.ang, self.lin);
+        let g0 = Vec3::new((-d).mul_add(m.xy, h0.x), (-d).mul_add(m.yy, h0.y), (-d).mul_add(m.yz, h0.z));
+        let g1 = Vec3::new(d.mul_add(m.xx, h1.x), d.mul_add(m.xy, h1.y), d.mul_add(m.xz, h1.z));
+        let ang = SymMat3 {
+            xx: (-d).mul_add(g0.y + h0.y, i.xx),
+            yy: d.mul_add(g1.x + h1.x, i.yy),
+            zz: i.zz,
+            xy: d.mul_add(h0.x - g1.y, i.xy),
+            xz: (-d).mul_add(h2.y, i.xz),
+            yz: d.mul_add(h2.x, i.yz),
+        };
+        Self { ang, mixed: Mat3::from_rows(g0, g1, h2), lin: m }
+    }
+
     /// `Iᴬ + I`, the latter of a rigid body.
     #[inline(always)]
     pub fn plus_rigid(&self, i: SpatialInertia<T>) -> Self {

@@ -77,7 +77,7 @@ impl<T: Scalar> JointTransform<T> {
             mixed: self.theta.z_back_mat(ia.mixed),
             lin: self.theta.z_back_sym(ia.lin),
         };
-        let along_z = about_z.moved(Vec3::new(T::zero(), T::zero(), self.d));
+        let along_z = about_z.moved_along_z(self.d);
         let about_x = ArticulatedInertia {
             ang: self.alpha.x_back_sym(along_z.ang),
             mixed: self.alpha.x_back_mat(along_z.mixed),

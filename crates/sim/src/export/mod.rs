@@ -84,10 +84,10 @@ fn head(robot: &Robot, model: &OwnedModel, precision: Precision) -> String {
          use gyroflex::spatial::*;\n\
          \n\
          /// Length of `q`.\n\
-         #[allow(dead_code)]\n\
+         #[allow(dead_code, reason = \"not every program asks\")]\n\
          pub const NQ: usize = {nq};\n\
          /// Length of `qd`, and of every other vector over the joints.\n\
-         #[allow(dead_code)]\n\
+         #[allow(dead_code, reason = \"not every program asks\")]\n\
          pub const NV: usize = {nv};\n",
         name = plain(&robot.name),
         model = model.fidelity.name(),
