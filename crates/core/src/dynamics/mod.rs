@@ -8,10 +8,14 @@
 mod aba;
 mod aba_base;
 mod aba_scratch;
+mod at_base;
+mod branches;
 mod crba;
 mod drive_torque;
 mod energy;
 mod forward;
+mod forward_derivatives;
+mod inverse_derivatives;
 mod joint_space;
 mod kinematics;
 mod moving;
@@ -20,9 +24,12 @@ mod tree;
 
 pub use aba::aba;
 pub use aba_scratch::AbaScratch;
+pub use at_base::DerivativeScratch;
 pub use crba::{CrbaScratch, coupling, crba, reflected_inertia};
 pub use energy::{Energy, Power, energy, power};
 pub use forward::{ForwardScratch, forward_dynamics, joint_space_len, matrix_len};
+pub use forward_derivatives::{ForwardDerivatives, derivative_matrix_len, forward_derivatives};
+pub use inverse_derivatives::{InverseDerivatives, inverse_derivatives};
 pub use joint_space::{JointSpaceScratch, forward_in_joint_space};
 pub use kinematics::{Axes, Frame, jacobian, placements, velocities};
 pub use rnea::{RneaScratch, rnea};
