@@ -193,8 +193,8 @@ pub(super) fn load_carrier<T: Scalar, F: Over<T>>(
 /// Adds what body `i` carries to its parent, when `i` is complete.
 #[inline(always)]
 pub(super) fn hand_on<T: Scalar, F: Over<T>>(body: &Body<T::Param>, i: usize, scratch: &mut [DerivativeScratch<T>]) {
-    let (Some(p), s) = (body.parent(), scratch[i]) else { return };
-    let Some(parent) = scratch.get_mut(p) else { return };
+    let Some((before, [s, ..])) = scratch.split_at_mut_checked(i) else { return };
+    let Some(parent) = body.parent().and_then(|p| before.get_mut(p)) else { return };
     parent.inertia = (parent.inertia.map(F::load) + s.inertia.map(F::load)).map(F::store);
     parent.coriolis = (parent.coriolis.map(F::load) + s.coriolis.map(F::load)).map(F::store);
     parent.add_force(s.f.map(F::load));

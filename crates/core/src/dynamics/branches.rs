@@ -72,7 +72,12 @@ pub(super) fn supporting<P: Scalar>(model: &Model<P>, k: usize) -> Option<usize>
     if k <= extra {
         return k.checked_sub(1).filter(|_| model.floating);
     }
-    let parent = model.bodies[k - extra].parent()?;
-    let base = &model.bodies[parent];
+    let body = model.bodies.get(k - extra)?;
+    let parent = body.parent()?;
+    // Along a chain, the processor need not wait for the record of the parent.
+    if body.placement.branch.is_none() {
+        return Some(k - 1);
+    }
+    let base = model.bodies.get(parent)?;
     Some(base.v_index() + base.joint.nv() - 1)
 }

@@ -38,7 +38,7 @@ pub struct ForwardDerivatives<'a, T> {
 
 /// Entries of the matrix that [`forward_derivatives`] works in.
 pub fn derivative_matrix_len<P: Scalar>(model: &Model<P>) -> usize {
-    2 * model.nv * model.nv
+    (2 * model.nv + 10) * model.nv
 }
 
 /// The accelerations of [`super::forward_dynamics`] and how they change with state and motor torques, in all four models. Loads from
@@ -89,8 +89,10 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
         let (bodies, nv) = (model.bodies, model.nv);
         let width = 5 * nv;
         let [q, qd, theta, thetad, tau_at] = [0, 1, 2, 3, 4].map(|block| block * nv);
-        let (m, r) = matrix.split_at_mut(nv * nv);
-        for all in [&mut *m, &mut *r, &mut *d_qdd, &mut *d_thetadd] {
+        let (m, rest) = matrix.split_at_mut(nv * nv);
+        let (r, local) = rest.split_at_mut(nv * nv);
+        let (on_link, on_rotor) = local.split_at_mut(5 * nv);
+        for all in [&mut *m, &mut *r, &mut *on_link, &mut *on_rotor, &mut *d_qdd, &mut *d_thetadd] {
             all.fill(T::zero());
         }
         let load = |k: usize| ext.tau.get(k).map_or(F::zero(), |tau| F::load(*tau));
@@ -147,7 +149,13 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             let axis = s.axis.map(F::load);
             s.column = inertia.momentum(axis).map(F::store);
             let mut left = F::load(qdd[k]) - axis.dot(force);
-            for_each_inertia(model, scratch, i, |column, entry: F| add(m, k * nv + column, entry));
+            for_each_inertia(
+                model,
+                scratch,
+                i,
+                #[inline(always)]
+                |column, entry: F| add(m, k * nv + column, entry),
+            );
             if let Some(Drive { rotor, elastic }) = &body.drive
                 && let Some(at) = carrier::<T, F>(rotor, scratch)
             {
@@ -156,14 +164,20 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
                 if elastic.is_none() {
                     left -= spin * at.2.dot(scratch[at.0].a.ang.map(F::load));
                 }
-                for_each_carrying(model, scratch, at, |on: OnCarrier<F>| {
-                    if elastic.is_some() {
-                        r[on.column * nv + k] = (by_torque * on.speed).store();
-                        add(d_qdd, on.column * width + thetad + k, -(spin * on.across));
-                    } else {
-                        add(m, k * nv + on.column, spin * on.speed);
-                    }
-                });
+                for_each_carrying(
+                    model,
+                    scratch,
+                    at,
+                    #[inline(always)]
+                    |on: OnCarrier<F>| {
+                        if elastic.is_some() {
+                            r[on.column * nv + k] = (by_torque * on.speed).store();
+                            add(d_qdd, on.column * width + thetad + k, -(spin * on.across));
+                        } else {
+                            add(m, k * nv + on.column, spin * on.speed);
+                        }
+                    },
+                );
             }
             add(m, k * nv + k, body.rigid_reflected_inertia::<F>());
             qdd[k] = left.store();
@@ -174,8 +188,9 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
 
         // Pass 3, base to tips: accelerations, ψ̈, and what they add to the forces: Iᶜ Δa, and Iᶜ S q̈ of the joints beyond.
         for i in 0..bodies.len() {
-            let (body, s) = (&bodies[i], scratch[i]);
+            let (body, s) = (&bodies[i], &scratch[i]);
             let k = body.v_index();
+            let inertia = s.inertia.map(F::load);
             let before = s.a.map(F::load);
             let a;
             if body.joint == JointKind::Floating {
@@ -190,23 +205,29 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
                 scratch[i].axis_acceleration = (a_p.cross(axis) + v_p.cross(rate)).map(F::store);
             }
             scratch[i].a = a.map(F::store);
-            scratch[i].add_force(s.inertia.map(F::load).momentum(a - before));
+            scratch[i].add_force(inertia.momentum(a - before));
         }
 
         // Pass 4, tips to base: −∂(M q̈ + b), −∂(n·α)/N.
         for (i, body) in bodies.iter().enumerate().rev() {
-            let (k, s) = (body.v_index(), scratch[i]);
+            let (k, s) = (body.v_index(), &mut scratch[i]);
             let mut beyond = s.beyond.map(F::load);
-            scratch[i].add_force(beyond);
-            for_each_pair(model, scratch, i, |at: Entries<F>| {
-                add(d_qdd, at.row * width + q + at.column, -at.q);
-                add(d_qdd, at.row * width + qd + at.column, -at.qd);
-            });
+            s.add_force(beyond);
+            for_each_pair(
+                model,
+                scratch,
+                i,
+                #[inline(always)]
+                |at: Entries<F>| {
+                    add(d_qdd, at.row * width + q + at.column, -at.q);
+                    add(d_qdd, at.row * width + qd + at.column, -at.qd);
+                },
+            );
             if body.joint == JointKind::Floating {
                 continue;
             }
             let acceleration = F::load(qdd[k]);
-            beyond = beyond.plus_scaled(acceleration, s.column.map(F::load));
+            beyond = beyond.plus_scaled(acceleration, scratch[i].column.map(F::load));
             if let Some(p) = body.parent().and_then(|p| scratch.get_mut(p)) {
                 p.beyond = (p.beyond.map(F::load) + beyond).map(F::store);
             }
@@ -215,47 +236,66 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             let spin = spin::<T, F>(rotor);
             if elastic.is_some() {
                 let by_speed = F::from_param(rotor.inv_gear_ratio);
-                for_each_carrying(model, scratch, at, |on: OnCarrier<F>| {
-                    add(d_thetadd, k * width + q + on.column, -(by_speed * on.q));
-                    add(d_thetadd, k * width + qd + on.column, -(by_speed * on.qd));
-                });
+                for_each_carrying(
+                    model,
+                    scratch,
+                    at,
+                    #[inline(always)]
+                    |on: OnCarrier<F>| {
+                        add(d_thetadd, k * width + q + on.column, -(by_speed * on.q));
+                        add(d_thetadd, k * width + qd + on.column, -(by_speed * on.qd));
+                    },
+                );
                 continue;
             }
             let on = &mut scratch[at.0].beyond;
             on.ang = on.ang.map(F::load).plus_scaled(spin * acceleration, at.2).map(F::store);
-            for_each_carrying(model, scratch, at, |on: OnCarrier<F>| {
-                add(d_qdd, on.column * width + qd + k, -(spin * on.across));
-                add(d_qdd, k * width + q + on.column, -(spin * on.q));
-                add(d_qdd, k * width + qd + on.column, -(spin * on.qd));
-            });
+            for_each_carrying(
+                model,
+                scratch,
+                at,
+                #[inline(always)]
+                |on: OnCarrier<F>| {
+                    add(d_qdd, on.column * width + qd + k, -(spin * on.across));
+                    add(d_qdd, k * width + q + on.column, -(spin * on.q));
+                    add(d_qdd, k * width + qd + on.column, -(spin * on.qd));
+                },
+            );
         }
 
-        // ∂(τ_J − friction) − R ∂r, and ∂r / B
+        // Solve for −∂(M q̈ + b), in the columns of θ and τ for R and 1: M⁻¹ R = ∂q̈/∂(−r), M⁻¹ = ∂q̈/∂τ_J
         for body in bodies {
             let k = body.v_index();
             if body.joint == JointKind::Floating {
                 for k in k..k + 6 {
-                    d_qdd[k * width + tau_at + k] = T::one();
+                    on_link[4 * nv + k] = T::one();
                 }
                 continue;
             }
             let by = sensitivity(body, joint(k, body.q_index()), model.knots);
-            for (block, by_link) in [q, qd, theta, thetad, tau_at].into_iter().zip(by.on_link) {
-                add(d_qdd, k * width + block + k, by_link);
+            for block in 0..5 {
+                on_link[block * nv + k] = by.on_link[block].store();
+                on_rotor[block * nv + k] = by.on_rotor[block].store();
             }
-            let Some(rotor) = body.drive.as_ref().filter(|_| body.is_elastic()).map(|drive| &drive.rotor) else {
-                continue;
-            };
-            for (block, by_rotor) in [q, qd, theta, thetad, tau_at].into_iter().zip(by.on_rotor) {
-                add(d_thetadd, k * width + block + k, by_rotor * F::from_param(rotor.inv_reflected_inertia));
-                let mut at = last_coordinate(model, rotor.mount());
-                while let Some(p) = at {
-                    add(d_qdd, p * width + block + k, -(F::load(r[p * nv + k]) * by_rotor));
-                    at = supporting(model, p);
+        }
+        for k in 0..nv {
+            let row = &mut d_qdd[k * width..][..width];
+            row[theta..theta + nv].copy_from_slice(&r[k * nv..][..nv]);
+            row[tau_at + k] = T::one();
+        }
+        solve::<T, F>(model, m, d_qdd, width);
+        // Then ∂q̈ = −M⁻¹ ∂(M q̈ + b) + M⁻¹ ∂(τ_J − friction) − M⁻¹ R ∂r, where what acts on a joint depends on its own coordinates alone.
+        for row in d_qdd.chunks_exact_mut(width.max(1)) {
+            for k in 0..nv {
+                let (by_rotor, by_link) = (F::load(row[theta + k]), F::load(row[tau_at + k]));
+                (row[theta + k], row[tau_at + k]) = (T::zero(), T::zero());
+                for block in [q, qd, theta, thetad, tau_at] {
+                    let entry = &mut row[block + k];
+                    let (link, rotor) = (F::load(on_link[block + k]), F::load(on_rotor[block + k]));
+                    *entry = (-by_rotor).mul_add(rotor, by_link.mul_add(link, F::load(*entry))).store();
                 }
             }
         }
-        solve::<T, F>(model, m, d_qdd, width);
 
         // ∂θ̈ = … − Rᵀ ∂q̈;   θ̈ = r/B − n·α/N,   rigid: τ_J less what the rotor takes
         for body in bodies {
@@ -275,6 +315,10 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             };
             let own = F::load(thetadd[k]) * F::from_param(rotor.inv_reflected_inertia);
             thetadd[k] = (own - at_carrier::<T, F>(rotor, scratch) * F::from_param(rotor.inv_gear_ratio)).store();
+            for block in 0..5 {
+                let own = F::load(on_rotor[block * nv + k]) * F::from_param(rotor.inv_reflected_inertia);
+                add(d_thetadd, k * width + block * nv + k, own);
+            }
             let mut at = last_coordinate(model, rotor.mount());
             while let Some(p) = at {
                 subtract::<T, F>(&mut d_thetadd[rows.clone()], F::load(r[p * nv + k]), &d_qdd[p * width..][..width]);

@@ -92,12 +92,18 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
         for (i, body) in bodies.iter().enumerate().rev() {
             let s = &mut scratch[i];
             s.column = s.inertia.map(F::load).momentum(s.axis.map(F::load)).map(F::store);
-            for_each_pair(model, scratch, i, |at: Entries<F>| {
-                let row = at.row * width + at.column;
-                add(tau_j, row + q, at.q);
-                add(tau_j, row + qd, at.qd);
-                add(tau_j, row + qdd, at.qdd);
-            });
+            for_each_pair(
+                model,
+                scratch,
+                i,
+                #[inline(always)]
+                |at: Entries<F>| {
+                    let row = at.row * width + at.column;
+                    add(tau_j, row + q, at.q);
+                    add(tau_j, row + qd, at.qd);
+                    add(tau_j, row + qdd, at.qdd);
+                },
+            );
             hand_on::<T, F>(body, i, scratch);
         }
 
@@ -107,10 +113,16 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             let Some(carrier) = carrier(rotor, scratch) else { continue };
             let spin = spin::<T, F>(rotor);
             let (speed, acceleration) = if elastic.is_some() { (thetad, thetadd) } else { (qd, qdd) };
-            for_each_carrying(model, scratch, carrier, |on: OnCarrier<F>| {
-                add(tau_j, on.column * width + speed + k, spin * on.across);
-                add(tau_j, on.column * width + acceleration + k, spin * on.speed);
-            });
+            for_each_carrying(
+                model,
+                scratch,
+                carrier,
+                #[inline(always)]
+                |on: OnCarrier<F>| {
+                    add(tau_j, on.column * width + speed + k, spin * on.across);
+                    add(tau_j, on.column * width + acceleration + k, spin * on.speed);
+                },
+            );
         }
 
         // τ = (1 − e') τ_J + B θ̈ + N J n·α + N f_m
@@ -145,12 +157,18 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             add(tau, own + acceleration, F::from_param(rotor.reflected_inertia));
             if let Some(carrier) = carrier(rotor, scratch) {
                 let spin = spin::<T, F>(rotor);
-                for_each_carrying(model, scratch, carrier, |on: OnCarrier<F>| {
-                    let row = k * width + on.column;
-                    add(tau, row + q, spin * on.q);
-                    add(tau, row + qd, spin * on.qd);
-                    add(tau, row + qdd, spin * on.speed);
-                });
+                for_each_carrying(
+                    model,
+                    scratch,
+                    carrier,
+                    #[inline(always)]
+                    |on: OnCarrier<F>| {
+                        let row = k * width + on.column;
+                        add(tau, row + q, spin * on.q);
+                        add(tau, row + qd, spin * on.qd);
+                        add(tau, row + qdd, spin * on.speed);
+                    },
+                );
             }
         }
         Ok(())
