@@ -14,7 +14,6 @@
 //! `Ṡ = ψ̇` for a joint of one degree of freedom. The six axes of a floating root are carried by the root itself: `ψ̇ = 0` and
 //! `Ṡ = v_0 × S`. A rotor adds its couple to the force of its carrier, and what the couple depends on to the carrier's `2B`.
 
-use super::State;
 use super::tree::{RootMotion, Tree, turns};
 use crate::Scalar;
 use crate::dispatch::Over;
@@ -87,14 +86,15 @@ impl<T: Scalar> Default for DerivativeScratch<T> {
 #[inline(always)]
 pub(super) fn outward<T: Scalar, F: Over<T>>(
     model: &Model<T::Param>,
-    state: &State<T>,
+    q: &[T],
+    qd: impl Fn(usize) -> F,
     qdd: impl Fn(usize) -> F,
     inertia: impl Fn(&Body<T::Param>) -> SpatialInertia<F>,
     scratch: &mut [DerivativeScratch<T>],
 ) -> Result<(), SizeError> {
     let tree = Tree::of(model);
     let lead = model.bodies.len() - tree.joints.len();
-    let (joint_q, joint_scratch) = (tree.positions(state.q)?, tree.bodies_mut("scratch", scratch)?.1);
+    let (joint_q, joint_scratch) = (tree.positions(q)?, tree.bodies_mut("scratch", scratch)?.1);
     turns::<T, F, _>(tree.joints, joint_q, joint_scratch, Body::angle, |s, theta| s.theta = theta);
 
     let lift = -model.gravity.map(F::from_param);
@@ -102,8 +102,8 @@ pub(super) fn outward<T: Scalar, F: Over<T>>(
     for (i, body) in model.bodies.iter().enumerate() {
         let (pose, v, a);
         if body.joint == JointKind::Floating {
-            let root = RootMotion::<F>::of(state.q, state.qd);
-            (pose, v) = (Transform::identity(), root.v);
+            let root = RootMotion::<F>::of(q, &[]);
+            (pose, v) = (Transform::identity(), Motion::from([0, 1, 2, 3, 4, 5].map(&qd)));
             let asked = Motion::from([0, 1, 2, 3, 4, 5].map(&qdd));
             a = Motion { ang: asked.ang, lin: asked.lin + root.rot * lift };
             // What the six axes of the root have in place of ψ̈ is `lift` crossed with them.
@@ -114,7 +114,7 @@ pub(super) fn outward<T: Scalar, F: Over<T>>(
                 None => at_rest,
             };
             let k = body.v_index();
-            let (qd, qdd) = (F::load(state.qd[k]), qdd(k));
+            let (qd, qdd) = (qd(k), qdd(k));
             let x = body.across(scratch[i].theta.map(F::load), F::load(joint_q[i - lead]));
             pose = x.after(body.branch().map_or(parent, |branch| branch.after(parent)));
             let z = pose.rot.rows[2];
@@ -233,6 +233,8 @@ pub(super) struct Entries<F> {
     pub(super) qd: F,
     /// `∂τ/∂q̈ = M`.
     pub(super) qdd: F,
+    /// `C`: `S_i·(Bᶜ S_j + Iᶜ Ṡ_j)`, for which `Ṁ = C + Cᵀ`.
+    pub(super) c: F,
 }
 
 /// How the torques at the joints change with the motion of joint `i`, and that of joint `i` with the motion of the joints that
@@ -246,15 +248,18 @@ pub(super) fn for_each_pair<T: Scalar, F: Over<T>>(
 ) {
     let (body, s) = (&model.bodies[i], &scratch[i]);
     let k = body.v_index();
+    let half = F::from_f64(0.5);
     let (inertia, coriolis) = (s.inertia.map(F::load), s.coriolis.map(F::load));
     if body.joint == JointKind::Floating {
         let (v, lift) = (s.v.map(F::load), s.axis_acceleration.map(F::load));
         for c in 0..6 {
             let axis = unit(c);
             let by_q = inertia.momentum(lift.cross(axis)).to_array();
-            let by_qd = (coriolis.force(axis) + inertia.momentum(v.cross(axis))).to_array();
+            let turned = inertia.momentum(v.cross(axis));
+            let (by_qd, turned) = ((coriolis.force(axis) + turned).to_array(), turned.to_array());
             for (r, qdd) in inertia.momentum(axis).to_array().into_iter().enumerate() {
-                put(Entries { row: k + r, column: k + c, q: by_q[r], qd: by_qd[r], qdd });
+                let c_term = half * (by_qd[r] + turned[r]);
+                put(Entries { row: k + r, column: k + c, q: by_q[r], qd: by_qd[r], qdd, c: c_term });
             }
         }
         return;
@@ -263,7 +268,8 @@ pub(super) fn for_each_pair<T: Scalar, F: Over<T>>(
     let by_q = coriolis.force(rate) + inertia.momentum(acceleration) + axis.cross_force(s.f.map(F::load));
     let by_qd = coriolis.force(axis) + inertia.momentum(rate + rate);
     let (u, b) = (s.column.map(F::load), coriolis.transpose_mul(axis));
-    put(Entries { row: k, column: k, q: axis.dot(by_q), qd: axis.dot(by_qd), qdd: axis.dot(u) });
+    let qd = axis.dot(by_qd);
+    put(Entries { row: k, column: k, q: axis.dot(by_q), qd, qdd: axis.dot(u), c: half * qd });
     let mut at = body.parent();
     while let Some(p) = at {
         let (Some(on), Some(s)) = (model.bodies.get(p), scratch.get(p)) else { break };
@@ -273,18 +279,19 @@ pub(super) fn for_each_pair<T: Scalar, F: Over<T>>(
             let (by_q, by_qd, inertia) = (by_q.to_array(), by_qd.to_array(), u.to_array());
             for c in 0..6 {
                 let axis = unit(c);
-                put(Entries { row: j + c, column: k, q: by_q[c], qd: by_qd[c], qdd: inertia[c] });
-                let (q, qd) = (lift.cross(axis).dot(u), b.dot(axis.ang) + v.cross(axis).dot(u));
-                put(Entries { row: k, column: j + c, q, qd, qdd: inertia[c] });
+                put(Entries { row: j + c, column: k, q: by_q[c], qd: by_qd[c], qdd: inertia[c], c: half * by_qd[c] });
+                let turned = v.cross(axis).dot(u);
+                let (q, qd) = (lift.cross(axis).dot(u), b.dot(axis.ang) + turned);
+                put(Entries { row: k, column: j + c, q, qd, qdd: inertia[c], c: half * (qd + turned) });
             }
             break;
         }
         let (axis, rate, acceleration) =
             (s.axis.map(F::load), s.axis_rate.map(F::load), s.axis_acceleration.map(F::load));
-        let qdd = axis.dot(u);
-        put(Entries { row: j, column: k, q: axis.dot(by_q), qd: axis.dot(by_qd), qdd });
+        let (qd, qdd) = (axis.dot(by_qd), axis.dot(u));
+        put(Entries { row: j, column: k, q: axis.dot(by_q), qd, qdd, c: half * qd });
         let (q, qd) = (b.dot(rate.ang) + acceleration.dot(u), b.dot(axis.ang) + (rate + rate).dot(u));
-        put(Entries { row: k, column: j, q, qd, qdd });
+        put(Entries { row: k, column: j, q, qd, qdd, c: half * qd });
         at = on.parent();
     }
 }
@@ -301,6 +308,8 @@ pub(super) struct OnCarrier<F> {
     pub(super) q: F,
     /// `∂(n·α)/∂q̇`.
     pub(super) qd: F,
+    /// `n·(Ṡ + ½ S × ω)`: the joint's part of `n·α` at rest accelerations, shared out as Christoffel does.
+    pub(super) c: F,
 }
 
 /// The same for each joint that carries body `m`, of angular velocity `omega`, with a rotor about `n`:
@@ -312,7 +321,7 @@ pub(super) fn for_each_carrying<T: Scalar, F: Over<T>>(
     (m, omega, n): (usize, Vec3<F>, Vec3<F>),
     mut put: impl FnMut(OnCarrier<F>),
 ) {
-    let across = omega.cross(n);
+    let (across, half) = (omega.cross(n), F::from_f64(0.5));
     let mut at = Some(m);
     while let Some(p) = at {
         let (Some(on), Some(s)) = (model.bodies.get(p), scratch.get(p)) else { break };
@@ -323,7 +332,8 @@ pub(super) fn for_each_carrying<T: Scalar, F: Over<T>>(
                 let axis = unit::<F>(c).ang;
                 let (speed, across) = (n.dot(axis), across.dot(axis));
                 let qd = n.dot(spin.cross(axis)) + across;
-                put(OnCarrier { column: column + c, speed, across, q: F::zero(), qd });
+                let c_term = qd - half * across;
+                put(OnCarrier { column: column + c, speed, across, q: F::zero(), qd, c: c_term });
             }
             break;
         }
@@ -331,7 +341,7 @@ pub(super) fn for_each_carrying<T: Scalar, F: Over<T>>(
         let (rate, acceleration) = (s.axis_rate.ang.map(F::load), s.axis_acceleration.ang.map(F::load));
         let q = n.dot(acceleration) + across.dot(rate);
         let qd = n.dot(rate + rate) + across.dot(axis);
-        put(OnCarrier { column, speed: n.dot(axis), across: across.dot(axis), q, qd });
+        put(OnCarrier { column, speed: n.dot(axis), across: across.dot(axis), q, qd, c: half * qd });
         at = on.parent();
     }
 }

@@ -104,7 +104,14 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
         };
 
         // Pass 1, base to tips, at q̈ = 0: motion and forces, then torques at the joints and couples of the rotors.
-        outward(model, &state, |_| F::zero(), |body| body.inertia.map(F::from_param), scratch)?;
+        outward(
+            model,
+            state.q,
+            |k| F::load(state.qd[k]),
+            |_| F::zero(),
+            |body| body.inertia.map(F::from_param),
+            scratch,
+        )?;
         subtract_wrenches::<T, F>(model, ext.wrenches, scratch);
         for body in bodies {
             let k = body.v_index();

@@ -73,7 +73,14 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
         tau.fill(T::zero());
 
         // Pass 1, base to tips: motion and forces, then the rotors' couples on their carriers.
-        outward(model, &state, |k| F::load(accel.qdd[k]), |body| body.inertia_with_rotors::<F>(), scratch)?;
+        outward(
+            model,
+            state.q,
+            |k| F::load(state.qd[k]),
+            |k| F::load(accel.qdd[k]),
+            |body| body.inertia_with_rotors::<F>(),
+            scratch,
+        )?;
         subtract_wrenches::<T, F>(model, ext.wrenches, scratch);
         for body in bodies {
             let (k, Some(Drive { rotor, elastic })) = (body.v_index(), &body.drive) else { continue };
