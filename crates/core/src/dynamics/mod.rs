@@ -20,6 +20,7 @@ mod inverse_derivatives;
 mod joint_space;
 mod kinematics;
 mod moving;
+mod regressor;
 mod rnea;
 mod tree;
 
@@ -34,6 +35,7 @@ pub use forward_derivatives::{ForwardDerivatives, derivative_matrix_len, forward
 pub use inverse_derivatives::{InverseDerivatives, inverse_derivatives};
 pub use joint_space::{JointSpaceScratch, forward_in_joint_space};
 pub use kinematics::{Axes, Frame, jacobian, placements, velocities};
+pub use regressor::{PARAMETERS, Regressor, parameters, regressor};
 pub use rnea::{RneaScratch, rnea};
 
 use crate::Scalar;
