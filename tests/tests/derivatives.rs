@@ -9,6 +9,7 @@ use gyroflex::dynamics::{
 };
 use gyroflex::model::{Fidelity, Model};
 use gyroflex::spatial::Force;
+use gyroflex_testkit::dual::moving_positions;
 use gyroflex_testkit::random::Options;
 use gyroflex_testkit::tolerance::{norm, tol};
 use gyroflex_testkit::{Dual, State as Point};
@@ -46,26 +47,12 @@ impl Moving {
         }
     }
 
-    /// Along the velocity coordinate `k`: a floating root moves in its own frame, `ṗ = R v`, `Q̇ = ½ Q (ω, 0)`.
+    /// Along the velocity coordinate `k`.
     fn position(mut self, k: usize) -> Self {
-        if self.q.len() == self.qd.len() {
-            self.q[k].slope = 1.0;
-        } else if k >= 6 {
-            self.q[k + 1].slope = 1.0;
-        } else {
-            let mut twist = [0.0; 6];
-            twist[k] = 1.0;
-            let [wx, wy, wz, vx, vy, vz] = twist;
-            let q: Vec<f64> = self.q.iter().map(|x| x.value).collect();
-            let turn = nalgebra::Quaternion::new(q[6], q[3], q[4], q[5]);
-            let turning = turn * nalgebra::Quaternion::new(0.0, wx, wy, wz) * 0.5;
-            let moving = nalgebra::UnitQuaternion::new_unchecked(turn) * nalgebra::Vector3::new(vx, vy, vz);
-            for (i, slope) in
-                [moving.x, moving.y, moving.z, turning.i, turning.j, turning.k, turning.w].into_iter().enumerate()
-            {
-                self.q[i].slope = slope;
-            }
-        }
+        let mut unit = vec![0.0; self.qd.len()];
+        unit[k] = 1.0;
+        let q: Vec<f64> = self.q.iter().map(|x| x.value).collect();
+        self.q = moving_positions(&q, &unit);
         self
     }
 

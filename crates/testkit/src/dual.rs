@@ -2,6 +2,7 @@
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use gyroflex::Scalar;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// `value + slope ε` with `ε² = 0`: what a function gives for it has the function's derivative along `slope` beside its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,4 +99,17 @@ impl Scalar for Dual {
     fn select_less(self, threshold: Self, less: Self, otherwise: Self) -> Self {
         if self.value < threshold.value { less } else { otherwise }
     }
+}
+
+/// The positions of a robot that moves with `qd`: a floating root's pose changes by its twist in its own frame, `ṗ = R v`,
+/// `Q̇ = ½ Q (ω, 0)`.
+pub fn moving_positions(q: &[f64], qd: &[f64]) -> Vec<Dual> {
+    if q.len() == qd.len() {
+        return q.iter().zip(qd).map(|(q, qd)| Dual::new(*q, *qd)).collect();
+    }
+    let turn = Quaternion::new(q[6], q[3], q[4], q[5]);
+    let turning = turn * Quaternion::new(0.0, qd[0], qd[1], qd[2]) * 0.5;
+    let flying = UnitQuaternion::new_unchecked(turn) * Vector3::new(qd[3], qd[4], qd[5]);
+    let root = [flying.x, flying.y, flying.z, turning.i, turning.j, turning.k, turning.w];
+    q.iter().zip(root.iter().chain(&qd[6..])).map(|(q, rate)| Dual::new(*q, *rate)).collect()
 }

@@ -57,6 +57,19 @@ pub(super) fn solve<T: Scalar, F: Over<T>>(model: &Model<T::Param>, m: &[T], b: 
     }
 }
 
+/// `b ← D^-½ L⁻ᵀ b` for the factorised `m`, so that its square is `bᵀ M⁻¹ b`.
+pub(super) fn half_solve<T: Scalar>(model: &Model<T::Param>, m: &[T], b: &mut [T]) {
+    let nv = model.nv;
+    for k in (0..nv).rev() {
+        let mut i = supporting(model, k);
+        while let Some(row) = i {
+            b[row] = (-m[k * nv + row]).mul_add(b[k], b[row]);
+            i = supporting(model, row);
+        }
+        b[k] = b[k] * m[k * nv + k].sqrt();
+    }
+}
+
 /// `a ← a − s b`.
 #[inline(always)]
 pub(super) fn subtract<T: Scalar, F: Over<T>>(a: &mut [T], s: F, b: &[T]) {

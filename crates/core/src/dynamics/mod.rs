@@ -20,8 +20,10 @@ mod inverse_derivatives;
 mod joint_space;
 mod kinematics;
 mod moving;
+mod operational;
 mod regressor;
 mod rnea;
+mod singular;
 mod tree;
 
 pub use aba::aba;
@@ -35,6 +37,7 @@ pub use forward_derivatives::{ForwardDerivatives, derivative_matrix_len, forward
 pub use inverse_derivatives::{InverseDerivatives, inverse_derivatives};
 pub use joint_space::{JointSpaceScratch, forward_in_joint_space};
 pub use kinematics::{Axes, Frame, jacobian, placements, velocities};
+pub use operational::{OperationalSpace, SingularValues, Task, operational_len, operational_space};
 pub use regressor::{PARAMETERS, Regressor, parameters, regressor};
 pub use rnea::{RneaScratch, rnea};
 
