@@ -2,9 +2,10 @@
 
 use gyroflex::Scalar;
 use gyroflex::dynamics::{
-    Axes, DerivativeScratch, Frame, OperationalSpace, SingularValues, State, Task, jacobian, operational_len,
+    Axes, DerivativeScratch, Frame, OperationalSpace, Rotation, SingularValues, State, Task, jacobian, operational_len,
     operational_space, placements,
 };
+use gyroflex::integrate::integrate;
 use gyroflex::model::{Fidelity, Model};
 use gyroflex::spatial::{Mat3, Transform, Vec3};
 use gyroflex_testkit::State as Point;
@@ -33,6 +34,10 @@ fn frame<T: Scalar>(model: &Model<'_, f64>) -> Frame<T> {
 }
 
 fn found(model: &Model<'_, f64>, s: &Point, directions: &[usize]) -> Found {
+    found_in(model, s, directions, Rotation::Geometric)
+}
+
+fn found_in(model: &Model<'_, f64>, s: &Point, directions: &[usize], rotation: Rotation) -> Found {
     let (nv, rows) = (model.nv(), directions.len());
     let mut scratch = vec![DerivativeScratch::new(); model.bodies().len()];
     let mut matrix = vec![f64::NAN; operational_len(model, rows)];
@@ -48,7 +53,7 @@ fn found(model: &Model<'_, f64>, s: &Point, directions: &[usize]) -> Found {
         gravity_force: &mut gravity_force,
     };
     let state = State { q: &s.q, qd: &s.qd, theta: &s.theta, thetad: &s.thetad };
-    let task = Task { frame: frame(model), directions, threshold: 1e-12 };
+    let task = Task { frame: frame(model), directions, rotation, threshold: 1e-12 };
     let values = operational_space(model, state, task, &mut scratch, &mut matrix, out).expect("slices fit");
     Found {
         jacobian: DMatrix::from_row_slice(rows, nv, &jacobian),
@@ -171,4 +176,64 @@ fn singular_poses_are_reported_and_give_numbers() {
             got.inertia.clone().symmetric_eigenvalues().iter().filter(|x| **x > 1e-9 * got.inertia.amax()).count();
         assert!(rank <= 3, "{t}: rank {rank}");
     });
+}
+
+/// Roll, pitch and yaw, or the angles about z, y and z, of a frame that moves.
+fn angles(model: &Model<'_, f64>, q: &[Dual], rotation: Rotation) -> [Dual; 3] {
+    let mut poses = vec![Transform::<Dual>::identity(); model.bodies().len()];
+    placements(model, q, &mut poses).expect("slices fit");
+    let frame = frame::<Dual>(model);
+    let [x, y, z] = frame.placement.after(poses[frame.body]).rotation().rows;
+    match rotation {
+        // R = Rz(yaw) Ry(pitch) Rx(roll)
+        Rotation::RollPitchYaw => {
+            let level = (x.x * x.x + y.x * y.x).sqrt();
+            [z.y.atan2(z.z), (-z.x).atan2(level), y.x.atan2(x.x)]
+        }
+        // R = Rz(a) Ry(b) Rz(c)
+        _ => {
+            let level = (x.z * x.z + y.z * y.z).sqrt();
+            [y.z.atan2(x.z), level.atan2(z.z), z.y.atan2(-z.x)]
+        }
+    }
+}
+
+#[test]
+fn analytical_jacobian_gives_the_rates_of_the_angles() {
+    for rotation in [Rotation::RollPitchYaw, Rotation::Zyz] {
+        for_trials::<f64>(200, &able(), &[Fidelity::Complete], tol(1e-9, 0.0), |t| {
+            let (model, s) = (t.core.model(), &t.state);
+            let got = found_in(&model, s, &ALL, rotation);
+            if got.values.representation < 0.05 {
+                return;
+            }
+            let rates = angles(&model, &moving_positions(&s.q, &s.qd), rotation).map(|x| x.slope);
+            let velocity = &got.jacobian * DVector::from_column_slice(&s.qd);
+            t.assert_close("rates of the angles", &velocity.as_slice()[..3], &rates, 0.0);
+        });
+    }
+}
+
+/// `J̇_A q̇` is how the rates change while the joints keep their speeds, by a difference of them an instant before and after.
+#[test]
+fn rates_of_the_angles_change_as_the_bias_acceleration_says() {
+    let step = 1e-6;
+    for rotation in [Rotation::RollPitchYaw, Rotation::Zyz] {
+        for_trials::<f64>(100, &able(), &[Fidelity::Complete], tol(1e-5, 0.0), |t| {
+            let (model, s) = (t.core.model(), &t.state);
+            let got = found_in(&model, s, &ALL, rotation);
+            if got.values.representation < 0.1 {
+                return;
+            }
+            let rates = |time: f64| {
+                let mut q = vec![0.0; s.q.len()];
+                let moved: Vec<f64> = s.qd.iter().map(|v| v * time).collect();
+                integrate(&model, &s.q, &moved, &mut q).expect("slices fit");
+                let later = Point { q, ..s.clone() };
+                &found_in(&model, &later, &ALL, rotation).jacobian * DVector::from_column_slice(&s.qd)
+            };
+            let want = (rates(step) - rates(-step)) / (2.0 * step);
+            t.assert_close("J̇ q̇", &got.bias_acceleration.as_slice()[..3], &want.as_slice()[..3], 1.0);
+        });
+    }
 }

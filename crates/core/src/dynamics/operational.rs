@@ -15,6 +15,7 @@ use super::at_base::{
     DerivativeScratch, carrier, for_each_carrying, for_each_inertia, hand_on, load_carrier, outward, spin, unit,
 };
 use super::branches::{factorise, half_solve, solve};
+use super::euler::{Angles, Rotation};
 use super::kinematics::Frame;
 use super::singular::{Rows, orthogonalise};
 use super::tree::RootMotion;
@@ -28,8 +29,11 @@ use crate::spatial::{Mat3, Motion, Vec3};
 pub struct Task<'a, T> {
     /// The frame.
     pub frame: Frame<T>,
-    /// Which of its six velocities count, of 0 to 5: about x, y, z, then along x, y, z, in world axes at the frame's origin.
+    /// Which of its six velocities count, of 0 to 5: three of rotation, then along x, y, z of the world.
     pub directions: &'a [usize],
+    /// What the velocities of rotation are: [`Rotation::Geometric`] has the frame's angular velocity about x, y, z of the world, the
+    /// others the rates of three angles, for which `J` is the analytical Jacobian.
+    pub rotation: Rotation,
     /// A direction in which unit forces accelerate the frame less than this part of the most they do counts as one in which it cannot
     /// move; `Λ` is zero there.
     pub threshold: T,
@@ -59,6 +63,8 @@ pub struct SingularValues<T> {
     pub smallest: T,
     /// The largest.
     pub largest: T,
+    /// The smallest singular value of `T` in `ω = T φ̇`: 0 where the angles do not describe rotation, 1 for the geometric rates.
+    pub representation: T,
 }
 
 /// Entries of the matrix that [`operational_space`] works in.
@@ -101,7 +107,7 @@ pub fn operational_space<T: Scalar>(
     let (gravity, w) = rest.split_at_mut(nv);
 
     joint_space(model, &state, scratch, m, velocity, gravity)?;
-    of_frame(model, &state, task, scratch, out.jacobian, out.bias_acceleration);
+    let representation = of_frame(model, &state, task, scratch, out.jacobian, out.bias_acceleration);
 
     // Singular values of J, and of W = J L⁻¹ D^-½, whose rows come out orthogonal: U W
     w.copy_from_slice(out.jacobian);
@@ -147,7 +153,7 @@ pub fn operational_space<T: Scalar>(
         out.velocity_force[r] = along(velocity) - lost;
         out.gravity_force[r] = along(gravity);
     }
-    Ok(values)
+    Ok(SingularValues { representation, ..values })
 }
 
 /// `M` (its lower triangle), `C q̇` and `g` of the links, elastic rotors eliminated.
@@ -203,7 +209,7 @@ fn joint_space<T: Scalar>(
     Ok(())
 }
 
-/// `J` and `J̇ q̇` in the task's directions.
+/// `J` and `J̇ q̇` in the task's directions, and the smallest singular value of `T`.
 fn of_frame<T: Scalar>(
     model: &Model<T::Param>,
     state: &State<T>,
@@ -211,23 +217,28 @@ fn of_frame<T: Scalar>(
     scratch: &[DerivativeScratch<T>],
     jacobian: &mut [T],
     bias: &mut [T],
-) {
+) -> T {
     let nv = model.nv;
     // From base to world axes.
     let to_world = |v: Vec3<T>| if model.floating { RootMotion::of(state.q, &[]).rot.transpose_mul(v) } else { v };
     let s = &scratch[task.frame.body];
     let link = model.bodies[task.frame.body].frame.map(T::from_param);
-    let at = task.frame.placement.after(link).after(s.pose).pos;
-    let select = |m: Motion<T>| {
-        let all = Motion { ang: to_world(m.ang), lin: to_world(m.lin) }.to_array();
-        move |direction: usize| all[direction]
-    };
+    let pose = task.frame.placement.after(link).after(s.pose);
+    let axes = pose.rot.rows.map(to_world);
+    let angles = Angles::of(task.rotation, Mat3::from_rows(axes[0], axes[1], axes[2]).transpose(), task.threshold);
+    let rates = |m: Motion<T>| Motion { ang: angles.as_ref().map_or(m.ang, |angles| angles.rates(m.ang)), lin: m.lin };
+    let in_world = |m: Motion<T>| Motion { ang: to_world(m.ang), lin: to_world(m.lin) };
     // The point moves with v + ω × r, and accelerates with a + α × r + ω × (v + ω × r).
-    let moved = |m: Motion<T>| Motion { ang: m.ang, lin: m.lin + m.ang.cross(at) };
+    let moved = |m: Motion<T>| Motion { ang: m.ang, lin: m.lin + m.ang.cross(pose.pos) };
     let (v, mut a) = (moved(s.v), moved(s.a));
     a.lin += v.ang.cross(v.lin);
+    let (v, mut a) = (in_world(v), in_world(a));
+    if let Some(angles) = &angles {
+        a.ang -= angles.turning(v.ang);
+    }
+    let a = rates(a).to_array();
     for (entry, direction) in bias.iter_mut().zip(task.directions) {
-        *entry = select(a)(*direction);
+        *entry = a[*direction];
     }
     jacobian.fill(T::zero());
     let mut body = Some(task.frame.body);
@@ -235,13 +246,14 @@ fn of_frame<T: Scalar>(
         let on = &model.bodies[b];
         for c in 0..on.joint.nv() {
             let axis = if on.joint == JointKind::Floating { unit(c) } else { scratch[b].axis };
-            let column = select(moved(axis));
+            let column = rates(in_world(moved(axis))).to_array();
             for (row, direction) in task.directions.iter().enumerate() {
-                jacobian[row * nv + on.v_index() + c] = column(*direction);
+                jacobian[row * nv + on.v_index() + c] = column[*direction];
             }
         }
         body = on.parent();
     }
+    angles.map_or(T::one(), |angles| angles.smallest)
 }
 
 fn identity<T: Scalar>(matrix: &mut [T], size: usize) {

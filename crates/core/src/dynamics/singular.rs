@@ -39,7 +39,7 @@ pub(super) fn orthogonalise<T: Scalar>(a: &mut Rows<'_, T>, mut turned: Option<&
             .fold(T::zero(), |sum, c| a.entries[i * columns + c].mul_add(a.entries[i * columns + c], sum))
             .sqrt()
     };
-    let mut values = SingularValues { smallest: T::zero(), largest: T::zero() };
+    let mut values = SingularValues { smallest: T::zero(), largest: T::zero(), representation: T::one() };
     for i in 0..rows {
         let value = length(i);
         values.largest = value.select_less(values.largest, values.largest, value);
