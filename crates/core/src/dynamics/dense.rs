@@ -27,7 +27,8 @@ pub(super) fn invert<T: Scalar, F: Over<T>>(nv: usize, m: &mut [T], pivots: &mut
             if let Some(one) = i.checked_sub(column).and_then(|at| right.get_mut(at)) {
                 *one = F::one();
             }
-            for k in i + 1..nv {
+            // The row just written comes last.
+            for k in (i + 1..nv).rev() {
                 let l = -at::<T, F>(m, k * stride + i) * at(pivots, k);
                 left = plus_scaled(left, l, load(m, k * stride + column));
                 right = plus_scaled(right, l, load(inverse, k * stride + column));
@@ -53,33 +54,89 @@ pub(super) fn invert<T: Scalar, F: Over<T>>(nv: usize, m: &mut [T], pivots: &mut
     }
 }
 
-/// `out ← a B`: one row of a product. `B` has rows as long as `out`, of which those beyond the entries of `a` are left out.
+/// `out ← Aᵀ B`, or `out + Aᵀ B` where `ONTO`. `A` is square with rows of `stride` entries, `B` and `out` have rows of `width`;
+/// `terms(end)` says how many rows of `A` count for the rows of `out` before `end`.
 #[inline(always)]
-pub(super) fn row_times<T: Scalar, F: Over<T>>(a: &[T], b: &[T], out: &mut [T]) {
-    let width = out.len();
-    let mut column = 0;
-    while column + COLUMNS <= width {
-        store(out, column, group::<T, F, COLUMNS>(a, b, width, column));
-        column += COLUMNS;
+pub(super) fn transposed_times<T: Scalar, F: Over<T>, const ONTO: bool>(
+    nv: usize,
+    (a, stride): (&[T], usize),
+    terms: impl Fn(usize) -> usize,
+    b: &[T],
+    out: &mut [T],
+    width: usize,
+) {
+    let mut row = 0;
+    while row + 4 <= nv {
+        rows::<T, F, 4, ONTO>((a, stride), terms(row + 4), b, out, (row, width));
+        row += 4;
     }
-    if column < width && width >= COLUMNS {
-        // The last group reaches back, so that it is whole.
-        store(out, width - COLUMNS, group::<T, F, COLUMNS>(a, b, width, width - COLUMNS));
-        return;
-    }
-    for column in column..width {
-        store(out, column, group::<T, F, 1>(a, b, width, column));
+    match nv - row {
+        3 => rows::<T, F, 3, ONTO>((a, stride), terms(nv), b, out, (row, width)),
+        2 => rows::<T, F, 2, ONTO>((a, stride), terms(nv), b, out, (row, width)),
+        1 => rows::<T, F, 1, ONTO>((a, stride), terms(nv), b, out, (row, width)),
+        _ => {}
     }
 }
 
-/// `N` entries of `a B`, from a column on.
+/// `R` rows of a product from `row` on.
 #[inline(always)]
-fn group<T: Scalar, F: Over<T>, const N: usize>(a: &[T], b: &[T], width: usize, column: usize) -> [F; N] {
-    let mut sum = [F::zero(); N];
-    for (k, factor) in a.iter().enumerate() {
-        sum = plus_scaled(sum, F::load(*factor), load(b, k * width + column));
+fn rows<T: Scalar, F: Over<T>, const R: usize, const ONTO: bool>(
+    a: (&[T], usize),
+    terms: usize,
+    b: &[T],
+    out: &mut [T],
+    (row, width): (usize, usize),
+) {
+    let tile = |out: &[T], column| tile::<T, F, R, COLUMNS, ONTO>(a, terms, b, out, (row, width), column);
+    let whole = width - width % COLUMNS;
+    // The last group reaches back, so that it is whole: taken first, put last.
+    let last = (whole < width && whole > 0).then(|| tile(out, width - COLUMNS));
+    for column in (0..whole).step_by(COLUMNS) {
+        let sums = tile(out, column);
+        put(out, (row, width), column, sums);
     }
-    sum
+    match last {
+        Some(last) => put(out, (row, width), width - COLUMNS, last),
+        None => {
+            for column in whole..width {
+                let sums = self::tile::<T, F, R, 1, ONTO>(a, terms, b, out, (row, width), column);
+                put(out, (row, width), column, sums);
+            }
+        }
+    }
+}
+
+/// `R` rows and `N` columns of a product: every row of `B` is read once for all of them.
+#[inline(always)]
+fn tile<T: Scalar, F: Over<T>, const R: usize, const N: usize, const ONTO: bool>(
+    (a, stride): (&[T], usize),
+    terms: usize,
+    b: &[T],
+    out: &[T],
+    (row, width): (usize, usize),
+    column: usize,
+) -> [[F; N]; R] {
+    let mut sums = core::array::from_fn(|r| if ONTO { load(out, (row + r) * width + column) } else { [F::zero(); N] });
+    for k in 0..terms {
+        let from: [F; N] = load(b, k * width + column);
+        let Some(factors) = a.get(k * stride + row..).and_then(|a| a.first_chunk::<R>()) else { break };
+        for (sum, factor) in sums.iter_mut().zip(factors) {
+            *sum = plus_scaled(*sum, F::load(*factor), from);
+        }
+    }
+    sums
+}
+
+#[inline(always)]
+fn put<T: Scalar, F: Over<T>, const R: usize, const N: usize>(
+    out: &mut [T],
+    (row, width): (usize, usize),
+    column: usize,
+    sums: [[F; N]; R],
+) {
+    for (r, sum) in sums.into_iter().enumerate() {
+        store(out, (row + r) * width + column, sum);
+    }
 }
 
 #[inline(always)]

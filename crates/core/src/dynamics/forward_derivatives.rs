@@ -15,9 +15,9 @@
 
 use super::at_base::{
     DerivativeScratch, Entries, OnCarrier, add, carrier, for_each_carrying, for_each_inertia, for_each_pair, hand_on,
-    load_carrier, outward, spin, subtract_wrenches, unit,
+    load_carrier, outward, set, spin, subtract_wrenches, unit,
 };
-use super::dense::{invert, row_times, stride};
+use super::dense::{invert, stride, transposed_times};
 use super::drive_torque::{JointState, drives, sensitivity};
 use super::{External, Forward, State, check_external, check_scratch, check_state};
 use crate::Scalar;
@@ -39,7 +39,7 @@ pub struct ForwardDerivatives<'a, T> {
 /// Entries of the matrix that [`forward_derivatives`] works in.
 pub fn derivative_matrix_len<P: Scalar>(model: &Model<P>) -> usize {
     let nv = model.nv;
-    (2 * stride(nv) + 6 * nv + 7) * nv
+    (2 * stride(nv) + 6 * nv + 2) * nv
 }
 
 /// The accelerations of [`super::forward_dynamics`] and how they change with state and motor torques, in all four models. Loads from
@@ -89,15 +89,14 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
         let (Forward { qdd, thetadd, tau_j }, ForwardDerivatives { qdd: d_qdd, thetadd: d_thetadd }) = (value, out);
         let (bodies, nv) = (model.bodies, model.nv);
         let width = 5 * nv;
-        let [q, qd, theta, thetad, tau_at] = [0, 1, 2, 3, 4].map(|block| block * nv);
-        // M; M⁻¹; −Rᵀ; M ∂q̈; by the rotors' own coordinates, ∂r; what is left to accelerate the joints; pivots
+        let [q, qd, _, thetad, tau_at] = [0, 1, 2, 3, 4].map(|block| block * nv);
+        // M; M⁻¹; −R; M ∂q̈; what is left to accelerate the joints; pivots
         let (m, rest) = matrix.split_at_mut(stride(nv) * nv);
         let (inverse, rest) = rest.split_at_mut(stride(nv) * nv);
         let (r, rest) = rest.split_at_mut(nv * nv);
         let (rhs, rest) = rest.split_at_mut(width * nv);
-        let (on_rotor, rest) = rest.split_at_mut(5 * nv);
         let (left, pivots) = rest.split_at_mut(nv);
-        for all in [&mut *m, &mut *r, &mut *rhs] {
+        for all in [&mut *m, &mut *r, &mut *rhs, &mut *d_thetadd] {
             all.fill(T::zero());
         }
         let load = |k: usize| ext.tau.get(k).map_or(F::zero(), |tau| F::load(*tau));
@@ -109,7 +108,7 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
         };
 
         // Pass 1, base to tips, at q̈ = 0: motion and forces, then torques at the joints and couples of the rotors.
-        outward(
+        outward::<T, F, false>(
             model,
             state.q,
             |k| F::load(state.qd[k]),
@@ -131,11 +130,6 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             let at = joint(k, body.q_index());
             let known = drives(body, at, F::load(tau[k]), load(k), model.knots);
             (left[k], thetadd[k], tau_j[k]) = (known.on_link.store(), known.on_rotor.store(), known.tau_j.store());
-            let by = sensitivity(body, at, model.knots);
-            for block in 0..5 {
-                rhs[k * width + block * nv + k] = by.on_link[block].store();
-                on_rotor[5 * k + block] = by.on_rotor[block].store();
-            }
             let Some(Drive { rotor, elastic }) = &body.drive else { continue };
             let Some((on, omega, n)) = carrier::<T, F>(rotor, scratch) else { continue };
             // Couple h ω × n + (r/N) n; by ω it changes with −h n×, and, J n nᵀ not being in the carrier's inertia, J (ω × n) nᵀ
@@ -158,7 +152,7 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
                 for c in 0..6 {
                     let column = inertia.momentum(unit::<F>(c)).to_array();
                     for (r, entry) in column.into_iter().enumerate() {
-                        m[(k + r) * stride(nv) + k + c] = entry.store();
+                        set(m, (k + r) * stride(nv) + k + c, entry);
                     }
                     left[k + c] = (F::load(left[k + c]) - force.to_array()[c]).store();
                 }
@@ -172,34 +166,19 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
                 scratch,
                 i,
                 #[inline(always)]
-                |column, entry: F| add(m, k * stride(nv) + column, entry),
+                |column, entry: F| set(m, k * stride(nv) + column, entry),
             );
-            if let Some(Drive { rotor, elastic }) = &body.drive
+            if let Some(rotor) = body.rigid_rotor()
                 && let Some(at) = carrier::<T, F>(rotor, scratch)
             {
                 let spin = spin::<T, F>(rotor);
-                let by_torque = F::from_param(rotor.inv_gear_ratio);
-                let own: [F; 5] = core::array::from_fn(|block| F::load(on_rotor[5 * k + block]));
-                if elastic.is_none() {
-                    accelerating -= spin * at.2.dot(scratch[at.0].a.ang.map(F::load));
-                }
+                accelerating -= spin * at.2.dot(scratch[at.0].a.ang.map(F::load));
                 for_each_carrying(
                     model,
                     scratch,
                     at,
                     #[inline(always)]
-                    |on: OnCarrier<F>| {
-                        if elastic.is_some() {
-                            let by_torque = by_torque * on.speed;
-                            r[k * nv + on.column] = (-by_torque).store();
-                            for (block, own) in own.into_iter().enumerate() {
-                                add(rhs, on.column * width + block * nv + k, -(by_torque * own));
-                            }
-                            add(rhs, on.column * width + thetad + k, -(spin * on.across));
-                        } else {
-                            add(m, k * stride(nv) + on.column, spin * on.speed);
-                        }
-                    },
+                    |on: OnCarrier<F>| add(m, k * stride(nv) + on.column, spin * on.speed),
                 );
             }
             add(m, k * stride(nv) + k, body.rigid_reflected_inertia::<F>());
@@ -245,8 +224,8 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
                 i,
                 #[inline(always)]
                 |at: Entries<F>| {
-                    add(rhs, at.row * width + q + at.column, -at.q);
-                    add(rhs, at.row * width + qd + at.column, -at.qd);
+                    set(rhs, at.row * width + q + at.column, -at.q);
+                    set(rhs, at.row * width + qd + at.column, -at.qd);
                 },
             );
             if body.joint == JointKind::Floating {
@@ -257,10 +236,37 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             if let Some(p) = body.parent().and_then(|p| scratch.get_mut(p)) {
                 p.beyond = (p.beyond.map(F::load) + beyond).map(F::store);
             }
+            let by = sensitivity(body, joint(k, body.q_index()), model.knots);
+            for (block, on_link) in by.on_link.into_iter().enumerate() {
+                add(rhs, k * width + block * nv + k, on_link);
+            }
             let Some(Drive { rotor, elastic }) = &body.drive else { continue };
+            if elastic.is_some() {
+                for (block, on_rotor) in by.on_rotor.into_iter().enumerate() {
+                    let by_torque = F::from_param(rotor.inv_reflected_inertia);
+                    set(d_thetadd, k * width + block * nv + k, by_torque * on_rotor);
+                }
+            }
             let Some(at) = carrier::<T, F>(rotor, scratch) else { continue };
             let spin = spin::<T, F>(rotor);
             if elastic.is_some() {
+                let by_speed = F::from_param(rotor.inv_gear_ratio);
+                for_each_carrying(
+                    model,
+                    scratch,
+                    at,
+                    #[inline(always)]
+                    |on: OnCarrier<F>| {
+                        let turned = by_speed * on.speed;
+                        set(r, on.column * nv + k, -turned);
+                        for (block, on_rotor) in by.on_rotor.into_iter().enumerate() {
+                            add(rhs, on.column * width + block * nv + k, -(turned * on_rotor));
+                        }
+                        add(rhs, on.column * width + thetad + k, -(spin * on.across));
+                        set(d_thetadd, k * width + q + on.column, -(by_speed * on.q));
+                        set(d_thetadd, k * width + qd + on.column, -(by_speed * on.qd));
+                    },
+                );
                 continue;
             }
             let on = &mut scratch[at.0].beyond;
@@ -278,11 +284,11 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             );
         }
 
-        for (row, d_qdd) in inverse.chunks_exact(stride(nv).max(1)).zip(d_qdd.chunks_exact_mut(width.max(1))) {
-            row_times::<T, F>(&row[..nv], rhs, d_qdd);
-        }
+        transposed_times::<T, F, false>(nv, (inverse, stride(nv)), |_| nv, rhs, d_qdd, width);
+        // A rotor is carried by joints before its own: R is strictly triangular.
+        transposed_times::<T, F, true>(nv, (r, nv), |end| end - 1, d_qdd, d_thetadd, width);
 
-        // ∂θ̈ = ∂r/B − ∂(n·α)/N − Rᵀ ∂q̈;   θ̈ = r/B − n·α/N,   rigid: τ_J less what the rotor takes
+        // θ̈ = r/B − n·α/N;   rigid: that of the joint, and τ_J less what the rotor takes
         for body in bodies {
             let k = body.v_index();
             let Some(Drive { rotor, .. }) = body.drive.as_ref().filter(|drive| drive.elastic.is_some()) else {
@@ -299,24 +305,6 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             let (by_torque, by_speed) =
                 (F::from_param(rotor.inv_reflected_inertia), F::from_param(rotor.inv_gear_ratio));
             thetadd[k] = (F::load(thetadd[k]) * by_torque - at_carrier::<T, F>(rotor, scratch) * by_speed).store();
-            let row = &mut d_thetadd[k * width..(k + 1) * width];
-            let reach = rotor.mount().map_or(0, |m| bodies[m].v_index() + bodies[m].joint.nv());
-            row_times::<T, F>(&r[k * nv..][..reach], d_qdd, row);
-            for block in 0..5 {
-                add(row, block * nv + k, F::load(on_rotor[5 * k + block]) * by_torque);
-            }
-            if let Some(at) = carrier::<T, F>(rotor, scratch) {
-                for_each_carrying(
-                    model,
-                    scratch,
-                    at,
-                    #[inline(always)]
-                    |on: OnCarrier<F>| {
-                        add(row, q + on.column, -(by_speed * on.q));
-                        add(row, qd + on.column, -(by_speed * on.qd));
-                    },
-                );
-            }
         }
         Ok(())
     }
