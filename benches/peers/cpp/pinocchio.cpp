@@ -1,7 +1,9 @@
 // Pinocchio, header-only: every algorithm is compiled with this program's own flags.
+#include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/kinematics.hpp>
+#include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 #include <pinocchio/multibody.hpp>
 #include <pinocchio/multibody/joint.hpp>
@@ -11,6 +13,7 @@
 namespace pin = pinocchio;
 using Eigen::Map;
 using Eigen::Matrix3d;
+using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Vector = Map<const VectorXd>;
@@ -42,9 +45,9 @@ struct Robot {
   pin::Model model;
   pin::Data data;
   std::vector<VectorXd> q, v, a, u;
-  VectorXd torques;
+  VectorXd torques, column;
 
-  explicit Robot(const Tree& t) : tree(t), model(model_of(t)), data(model), torques(t.nv) {
+  explicit Robot(const Tree& t) : tree(t), model(model_of(t)), data(model), torques(t.nv), column(t.nv) {
     for (int k = 0; k < STATES; ++k) {
       q.emplace_back(Vector(t.q(k), t.nq));
       v.emplace_back(Vector(t.v(k), t.nv));
@@ -76,7 +79,50 @@ struct Robot {
     used(data.M);
   }
 
-  double momentum_error(int k) {
+  // Accelerations too, as a by-product. What the springs add is two columns of the inverse inertia matrix each.
+  void forward_derivatives(int k) {
+    const auto i = size_t(k);
+    if (tree.springs.empty()) {
+      pin::computeABADerivatives(model, data, q[i], v[i], u[i]);
+    } else {
+      tree.add_springs(q[i].data(), v[i].data(), u[i].data(), 1.0, torques.data());
+      pin::computeABADerivatives(model, data, q[i], v[i], torques);
+      for (const Spring& s : tree.springs) {
+        column = data.Minv.col(s.link_v) - data.Minv.col(s.rotor_v) / s.gear;
+        data.ddq_dq.col(s.link_v) -= s.stiffness * column;
+        data.ddq_dv.col(s.link_v) -= s.damping * column;
+        data.ddq_dq.col(s.rotor_v) += s.stiffness / s.gear * column;
+        data.ddq_dv.col(s.rotor_v) += s.damping / s.gear * column;
+      }
+    }
+    used(data.ddq_dq);
+  }
+
+  // The springs add constants, which are nobody's work.
+  void inverse_derivatives(int k) {
+    pin::computeRNEADerivatives(model, data, q[size_t(k)], v[size_t(k)], a[size_t(k)]);
+    used(data.dtau_dq);
+  }
+
+  double product_error(int k, int which, const MatrixXd& matrix, const VectorXd& direction) const {
+    const VectorXd product = matrix * direction;
+    return tree.error(product.data(), tree.expected_derivative(k, which), which < 3);
+  }
+
+  double forward_derivative_error(int k) const {
+    const auto i = size_t(k);
+    return std::max({product_error(k, 0, data.ddq_dq, a[i]), product_error(k, 1, data.ddq_dv, a[i]),
+                     product_error(k, 2, data.Minv, u[i]),
+                     tree.error(data.ddq.data(), tree.expected_forward(k), true)});
+  }
+
+  double inverse_derivative_error(int k) const {
+    const auto i = size_t(k);
+    return std::max({product_error(k, 3, data.dtau_dq, a[i]), product_error(k, 4, data.dtau_dv, a[i]),
+                     momentum_error(k)});
+  }
+
+  double momentum_error(int k) const {
     const VectorXd product = data.M.selfadjointView<Eigen::Upper>() * a[size_t(k)];
     return tree.error(product.data(), tree.expected_momentum(k), false);
   }
@@ -114,6 +160,14 @@ int main(int argc, char** argv) {
       r->inverse(k);
       return r->tree.error(r->torques.data(), r->tree.expected_inverse(k), false);
     }, [=](int k) { r->inverse(k); });
+    worker.add(name + "/aba_derivatives", TOLERANCE, [=](int k) {
+      r->forward_derivatives(k);
+      return r->forward_derivative_error(k);
+    }, [=](int k) { r->forward_derivatives(k); });
+    worker.add(name + "/rnea_derivatives", TOLERANCE, [=](int k) {
+      r->inverse_derivatives(k);
+      return r->inverse_derivative_error(k);
+    }, [=](int k) { r->inverse_derivatives(k); });
     worker.add(name + "/fk", TOLERANCE, [=](int k) {
       pin::forwardKinematics(r->model, r->data, r->q[size_t(k)]);
       return r->pose_error(k);

@@ -44,7 +44,7 @@ struct Tree {
   std::vector<Body> bodies;
   std::vector<Spring> springs;
   std::vector<double> gears;  // per velocity coordinate: N of a rotor, else 1
-  std::vector<double> states, expected;
+  std::vector<double> states, expected, derivatives;
 
   Tree(const std::string& folder, const std::string& name) : name(name) {
     const std::string stem = folder + "/" + name;
@@ -68,6 +68,7 @@ struct Tree {
     for (const auto& s : springs) gears[size_t(s.rotor_v)] = s.gear;
     states = read_numbers(stem + ".states");
     expected = read_numbers(stem + ".expected");
+    derivatives = read_numbers(stem + ".derivatives");
   }
 
   bool floating() const { return bodies.front().joint == "floating"; }
@@ -79,6 +80,8 @@ struct Tree {
   const double* expected_forward(int k) const { return row(k); }
   const double* expected_inverse(int k) const { return row(k) + nv; }
   const double* expected_momentum(int k) const { return row(k) + 2 * nv; }  // M(q) a
+  // of accelerations by q and v along a, and by torques along u; of torques by q and v along a
+  const double* expected_derivative(int k, int which) const { return &derivatives[size_t((5 * k + which) * nv)]; }
   const double* expected_poses(int k) const { return row(k) + 3 * nv; }
 
   // out = torques + sign * what the springs exert

@@ -6,6 +6,7 @@ Run by the Python of the environment that `run install` makes: `models.py FOLDER
   NAME.xml       the same for MuJoCo
   NAME.states    256 × [q, v, a, u], little-endian f64
   NAME.expected  256 × [accelerations for u, torques for a, M(q) a, 12 numbers a body for its pose], from Pinocchio's Python module
+  NAME.derivatives  256 × [∂v̇/∂q a, ∂v̇/∂v a, ∂v̇/∂u u, ∂τ/∂q a, ∂τ/∂v a]: accelerations with the springs, torques without them
   NAME.still     accelerations of state 0 without torques and springs
 NAME_flex is the robot with a rotor on the previous link for every joint: a body of its own in these files, a drive in
 NAME_flex.yaml, which is what gyroflex reads. Coordinates run rotor, link, rotor, link, …
@@ -116,12 +117,33 @@ def spring_torques(springs, q, v):
     return torques
 
 
+def spring_slopes(springs, nv):
+    """How the springs' torques change with positions and with velocities."""
+    slopes = np.zeros((2, nv, nv))
+    for s in springs:
+        turns = np.zeros(nv)
+        turns[s.rotor_v], turns[s.link_v] = 1 / s.gear, -1
+        slopes -= np.multiply.outer([s.stiffness, s.damping], np.outer(turns, turns))
+    return slopes
+
+
+def derivatives(model, data, state, spring, slopes):
+    """The columns of NAME.derivatives."""
+    q, v, a, u = state
+    pin.computeABADerivatives(model, data, q, v, u + spring)
+    inverse = data.Minv
+    forward = [(data.ddq_dq + inverse @ slopes[0]) @ a, (data.ddq_dv + inverse @ slopes[1]) @ a, inverse @ u]
+    pin.computeRNEADerivatives(model, data, q, v, a)
+    return np.concatenate([*forward, data.dtau_dq @ a, data.dtau_dv @ a])
+
+
 def write(folder, name, tree, springs):
     model = pinocchio_model(tree)
     data = model.createData()
     floating = tree[0].joint == "floating"
     random = np.random.default_rng(model.nv)
-    states, expected, still = [], [], None
+    slopes = spring_slopes(springs, model.nv)
+    states, expected, slope, still = [], [], [], None
     for _ in range(STATES):
         q, v, a, u = random_state(random, model, springs, floating)
         spring = spring_torques(springs, q, v)
@@ -135,7 +157,8 @@ def write(folder, name, tree, springs):
             still = pin.aba(model, data, q, v, np.zeros(model.nv), LOCAL).copy()
         states.append(np.concatenate([q, v, a, u]))
         expected.append(np.concatenate([forward, inverse, momentum, poses]))
-    for kind, numbers in [("states", states), ("expected", expected), ("still", still)]:
+        slope.append(derivatives(model, data, (q, v, a, u), spring, slopes))
+    for kind, numbers in [("states", states), ("expected", expected), ("derivatives", slope), ("still", still)]:
         np.asarray(numbers, "<f8").tofile(folder / f"{name}.{kind}")
     (folder / f"{name}.tree").write_text(tree_text(tree, springs, model.nq, model.nv))
     (folder / f"{name}.urdf").write_text(urdf(name, tree))

@@ -66,6 +66,7 @@ pub struct Tree {
     pub still: Vec<f64>,
     states: Vec<f64>,
     expected: Vec<f64>,
+    derivatives: Vec<f64>,
 }
 
 impl Tree {
@@ -87,9 +88,9 @@ impl Tree {
             let words = bytes.chunks_exact(8);
             words.map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]])).collect()
         };
-        let [states, expected, still] = ["states", "expected", "still"].map(numbers);
+        let [states, expected, derivatives, still] = ["states", "expected", "derivatives", "still"].map(numbers);
         let name = name.to_owned();
-        Self { name, nq, nv, gravity: head[4], bodies, springs, gears, still, states, expected }
+        Self { name, nq, nv, gravity: head[4], bodies, springs, gears, still, states, expected, derivatives }
     }
 
     /// Whether the root is free.
@@ -109,6 +110,13 @@ impl Tree {
         let (nv, width) = (self.nv, 3 * self.nv + 12 * self.bodies.len());
         let row = &self.expected[k * width..][..width];
         [&row[..nv], &row[nv..2 * nv], &row[2 * nv..3 * nv], &row[3 * nv..]]
+    }
+
+    /// What is expected of derivatives at state `k`: of the accelerations by `q` and by `v` along `a`, and by `u` along `u`; of
+    /// the torques without the springs by `q` and by `v` along `a`.
+    pub fn expected_derivatives(&self, k: usize) -> [&[f64]; 5] {
+        let row = &self.derivatives[k * 5 * self.nv..][..5 * self.nv];
+        std::array::from_fn(|i| &row[i * self.nv..][..self.nv])
     }
 
     /// `out = torques + sign ·` what the springs exert.

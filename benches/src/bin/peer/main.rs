@@ -1,5 +1,6 @@
 //! gyroflex's program in the comparison with other libraries; `peers/README.md` says how it is run.
 
+mod derivatives;
 mod links;
 mod robot;
 
@@ -29,6 +30,7 @@ fn main() {
     for name in worker.robots.clone() {
         let robot = add::<f64>(&mut worker, &name, "", TOLERANCE);
         worker.add(format!("{name}/crba"), TOLERANCE, &robot, Robot::matrix, Robot::matrix_error);
+        derivatives::add(&mut worker, &name);
         // The pose of a rotor is that of its mount, turned by its angle: nothing to compute.
         if robot.borrow().is_rigid() {
             worker.add(format!("{name}/fk"), TOLERANCE, &robot, Robot::poses, Robot::pose_error);

@@ -12,23 +12,23 @@ use std::hint::black_box;
 use std::path::Path;
 
 /// As many states as a number holds, in our coordinates: motors reflected, twists with the angular part first.
-struct Point<T> {
-    q: Vec<T>,
-    qd: Vec<T>,
-    theta: Vec<T>,
-    thetad: Vec<T>,
-    tau: Vec<T>,
-    qdd: Vec<T>,
-    thetadd: Vec<T>,
+pub struct Point<T> {
+    pub q: Vec<T>,
+    pub qd: Vec<T>,
+    pub theta: Vec<T>,
+    pub thetad: Vec<T>,
+    pub tau: Vec<T>,
+    pub qdd: Vec<T>,
+    pub thetadd: Vec<T>,
 }
 
 pub struct Robot<T: Lane> {
-    tree: Tree,
-    model: Model<'static, T::Param>,
+    pub tree: Tree,
+    pub model: Model<'static, T::Param>,
     aba: Vec<AbaScratch<T>>,
     rnea: Vec<RneaScratch<T>>,
     crba: Vec<CrbaScratch<T>>,
-    points: Vec<Point<T>>,
+    pub points: Vec<Point<T>>,
     out: [Vec<T>; 3],
     matrices: [Vec<T>; 3],
     poses: Vec<Transform<T>>,
@@ -112,7 +112,7 @@ impl<T: Lane> Robot<T> {
     }
 
     /// Back to the tree's coordinates; `motion` of rotors grows through the gear, their torque shrinks.
-    fn tree_order(&self, links: &[f64], rotors: &[f64], motion: bool) -> Vec<f64> {
+    pub fn tree_order(&self, links: &[f64], rotors: &[f64], motion: bool) -> Vec<f64> {
         let mut all = vec![0.0; self.tree.nv];
         for (k, (&i, rotor)) in self.links.iter().zip(&self.rotors).enumerate() {
             all[i] = links[k];
