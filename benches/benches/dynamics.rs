@@ -35,7 +35,7 @@ fn dynamics(c: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    // 120 benches: a minute and a half in all.
+    // 180 benches: two minutes and a half in all.
     config = Criterion::default().sample_size(20).warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_millis(400));
     targets = dynamics
 }

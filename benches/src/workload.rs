@@ -3,7 +3,9 @@
 use crate::STATES;
 use gyroflex::Scalar;
 use gyroflex::dynamics::{
-    AbaScratch, Acceleration, CrbaScratch, External, Forward, Inverse, RneaScratch, State, aba, crba, placements, rnea,
+    AbaScratch, Acceleration, CrbaScratch, DerivativeScratch, External, Forward, ForwardDerivatives, Inverse,
+    InverseDerivatives, RneaScratch, State, aba, crba, derivative_matrix_len, forward_derivatives, inverse_derivatives,
+    placements, rnea,
 };
 use gyroflex::model::{Body, BodySpec, Fidelity, Knot, Model, RobotSpec};
 use gyroflex::spatial::{Transform, Vec3};
@@ -52,11 +54,21 @@ pub enum Algorithm {
     Crba,
     /// Poses of all links.
     Placements,
+    /// Forward dynamics with its derivatives.
+    ForwardDerivatives,
+    /// Derivatives of inverse dynamics.
+    InverseDerivatives,
 }
 
 impl Algorithm {
-    /// All four.
-    pub const ALL: [Self; 4] = [Self::Aba, Self::Rnea, Self::Crba, Self::Placements];
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Aba, Self::Rnea, Self::Crba, Self::Placements, Self::ForwardDerivatives, Self::InverseDerivatives];
+
+    /// Whether it computes derivatives, of which a call takes many times as long.
+    pub const fn is_derivative(self) -> bool {
+        matches!(self, Self::ForwardDerivatives | Self::InverseDerivatives)
+    }
 
     /// The function's name.
     pub const fn name(self) -> &'static str {
@@ -65,9 +77,14 @@ impl Algorithm {
             Self::Rnea => "rnea",
             Self::Crba => "crba",
             Self::Placements => "placements",
+            Self::ForwardDerivatives => "forward_derivatives",
+            Self::InverseDerivatives => "inverse_derivatives",
         }
     }
 }
+
+/// Blocks of derivatives of inverse dynamics; forward dynamics has one less.
+const DERIVATIVES: usize = 6;
 
 /// A robot in one model and scalar, ready to be called.
 #[derive(Debug)]
@@ -80,6 +97,9 @@ pub struct Workload<T: Scalar + 'static> {
     out: [Vec<T>; 3],
     matrix: Vec<T>,
     poses: Vec<Transform<T>>,
+    sensitivities: Vec<DerivativeScratch<T>>,
+    derivative_matrix: Vec<T>,
+    derivatives: [Vec<T>; 2],
 }
 
 impl<T: Scalar + 'static> Workload<T> {
@@ -101,16 +121,19 @@ impl<T: Scalar + 'static> Workload<T> {
                 [q, qd, theta, thetad, tau].map(|x| x.into_iter().map(T::from_f64).collect())
             })
             .collect();
-        let zeros = || vec![T::zero(); nv];
+        let zeros = |length| vec![T::zero(); length];
         Self {
-            model,
-            states,
             aba: vec![AbaScratch::new(); n],
             rnea: vec![RneaScratch::new(); n],
             crba: vec![CrbaScratch::new(); n],
-            out: [zeros(), zeros(), zeros()],
-            matrix: vec![T::zero(); nv * nv],
+            out: [zeros(nv), zeros(nv), zeros(nv)],
+            matrix: zeros(nv * nv),
             poses: vec![Transform::identity(); n],
+            sensitivities: vec![DerivativeScratch::new(); n],
+            derivative_matrix: zeros(derivative_matrix_len(&model)),
+            derivatives: [zeros(DERIVATIVES * nv * nv), zeros(DERIVATIVES * nv * nv)],
+            model,
+            states,
         }
     }
 
@@ -124,7 +147,7 @@ impl<T: Scalar + 'static> Workload<T> {
     pub fn call(&mut self, algorithm: Algorithm, i: usize) {
         let [q, qd, theta, thetad, tau] = &self.states[i % STATES];
         let (model, state) = (&self.model, State { q, qd, theta, thetad });
-        let [a, b, c] = &mut self.out;
+        let ([a, b, c], [d, e]) = (&mut self.out, &mut self.derivatives);
         let done = match algorithm {
             Algorithm::Aba => {
                 let out = Forward { qdd: a, thetadd: b, tau_j: c };
@@ -136,6 +159,18 @@ impl<T: Scalar + 'static> Workload<T> {
             }
             Algorithm::Crba => crba(model, q, &mut self.crba, &mut self.matrix),
             Algorithm::Placements => placements(model, q, &mut self.poses),
+            Algorithm::ForwardDerivatives => {
+                let length = (DERIVATIVES - 1) * a.len() * a.len();
+                let value = Forward { qdd: a, thetadd: b, tau_j: c };
+                let out = ForwardDerivatives { qdd: &mut d[..length], thetadd: &mut e[..length] };
+                let (scratch, matrix) = (&mut self.sensitivities, &mut self.derivative_matrix);
+                forward_derivatives(model, state, tau, External::none(), scratch, matrix, value, out)
+            }
+            Algorithm::InverseDerivatives => {
+                let accel = Acceleration { qdd: tau, thetadd: tau };
+                let out = InverseDerivatives { tau_j: d, tau: e };
+                inverse_derivatives(model, state, accel, External::none(), &mut self.sensitivities, out)
+            }
         };
         done.unwrap_or_else(|e| panic!("{e}"));
     }
