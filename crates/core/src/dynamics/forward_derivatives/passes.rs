@@ -50,7 +50,7 @@ impl<T: Scalar> Passes<'_, '_, T> {
     /// Base to tips, at `q̈ = 0`: motion and forces, then torques at the joints and couples of the rotors.
     #[inline(always)]
     pub(super) fn without_accelerations<F: Over<T>>(&mut self) -> Result<(), SizeError> {
-        let Self { model, state, tau, ext, .. } = self;
+        let (model, state, tau, ext) = (self.model, self.state, self.tau, self.ext);
         let (scratch, rhs, left) = (&mut *self.scratch, &mut *self.rhs, &mut *self.left);
         let (thetadd, tau_j) = (&mut *self.value.thetadd, &mut *self.value.tau_j);
         let nv = model.nv;
@@ -74,7 +74,7 @@ impl<T: Scalar> Passes<'_, '_, T> {
                 }
                 continue;
             }
-            let at = joint(state, k, body.q_index());
+            let at = joint(&state, k, body.q_index());
             let known = drives(body, at, F::load(tau[k]), load(k), model.knots);
             (left[k], thetadd[k], tau_j[k]) = (known.on_link.store(), known.on_rotor.store(), known.tau_j.store());
             let Some(Drive { rotor, elastic }) = &body.drive else { continue };
@@ -144,7 +144,7 @@ impl<T: Scalar> Passes<'_, '_, T> {
     /// beyond.
     #[inline(always)]
     pub(super) fn accelerate<F: Over<T>>(&mut self) {
-        let (model, state, scratch) = (self.model, &self.state, &mut *self.scratch);
+        let (model, state, scratch) = (self.model, self.state, &mut *self.scratch);
         let (inverse, left, qdd) = (&*self.inverse, &*self.left, &mut *self.value.qdd);
         let nv = model.nv;
         for (qdd, row) in qdd.iter_mut().zip(inverse.chunks_exact(stride(nv).max(1))) {
@@ -176,7 +176,7 @@ impl<T: Scalar> Passes<'_, '_, T> {
     /// Tips to base: `M ∂q̈` and `R`, and what of `∂θ̈` does not come with `∂q̈`: `∂r/B − ∂(n·α)/N`.
     #[inline(always)]
     pub(super) fn right_hand_sides<F: Over<T>>(&mut self) {
-        let (model, state, scratch, qdd) = (self.model, &self.state, &mut *self.scratch, &*self.value.qdd);
+        let (model, state, scratch, qdd) = (self.model, self.state, &mut *self.scratch, &*self.value.qdd);
         let (r, rhs, d_thetadd) = (&mut *self.r, &mut *self.rhs, &mut *self.out.thetadd);
         let (nv, width) = (model.nv, 5 * model.nv);
         let [q, qd, _, thetad, _] = [0, 1, 2, 3, 4].map(|block| block * nv);
@@ -202,7 +202,7 @@ impl<T: Scalar> Passes<'_, '_, T> {
             if let Some(p) = body.parent().and_then(|p| scratch.get_mut(p)) {
                 p.beyond = (p.beyond.map(F::load) + beyond).map(F::store);
             }
-            let by = sensitivity(body, joint::<T, F>(state, k, body.q_index()), model.knots);
+            let by = sensitivity(body, joint::<T, F>(&state, k, body.q_index()), model.knots);
             for (block, on_link) in by.on_link.into_iter().enumerate() {
                 add(rhs, k * width + block * nv + k, on_link);
             }
