@@ -41,8 +41,8 @@ fn the_counter_counts() {
     assert_eq!(allocations(|| drop(std::hint::black_box(vec![1u8; 100]))), 1);
 }
 
-#[test]
-fn no_algorithm_allocates() {
+/// Floating, with an elastic joint and a rotor that needs the joint-space route.
+fn robot() -> Lowered {
     let root = BodySpec { joint: JointKind::Floating, ..link(None, [0.0, 0.0, 1.0], [0.0; 3], [0.0; 3]) };
     let mut elbow = link(Some(0), [0.0, 1.0, 0.0], [0.3, 0.0, 0.0], [0.1, 0.0, 0.0]);
     elbow.drive = Some(drive(Some(0), [0.0, 1.0, 0.0], 80.0, elastic(800.0, 1.0)));
@@ -50,11 +50,18 @@ fn no_algorithm_allocates() {
     let mut wrist = link(Some(1), [1.0, 0.0, 0.0], [0.3, 0.0, 0.0], [0.1, 0.0, 0.0]);
     // Away from the joint's parent: the joint-space route.
     wrist.drive = Some(drive(Some(0), [0.0, 0.0, 1.0], 50.0, TransmissionSpec::Rigid));
-    let robot = Lowered::new(&[root, elbow, wrist], [0.0, 0.0, -9.81], Fidelity::Complete);
+    Lowered::new(&[root, elbow, wrist], [0.0, 0.0, -9.81], Fidelity::Complete)
+}
+
+const POSITIONS: [f64; 9] = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.2, -0.4];
+
+#[test]
+fn no_algorithm_allocates() {
+    let robot = robot();
     let model = robot.model();
     assert!(model.has_remote_rigid_rotor());
 
-    let mut q = vec![0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.2, -0.4];
+    let mut q = POSITIONS.to_vec();
     let (mut qd, mut theta, mut thetad) = (vec![0.1; 8], vec![0.2; 8], vec![0.1; 8]);
     let (tau, mut qdd, mut thetadd, mut tau_j) = (vec![0.3; 8], vec![0.0; 8], vec![0.0; 8], vec![0.0; 8]);
     let mut aba_scratch = vec![AbaScratch::new(); 3];
@@ -95,4 +102,55 @@ fn no_algorithm_allocates() {
     });
     assert_eq!(count, 0);
     assert!(q.iter().chain(&qd).all(|x: &f64| x.is_finite()));
+}
+
+#[test]
+fn neither_derivatives_nor_matrices_allocate() {
+    const NV: usize = 8;
+    let robot = robot();
+    let model = robot.model();
+    let (qd, theta, thetad, tau) = ([0.1; NV], [0.2; NV], [0.1; NV], [0.3; NV]);
+    let mut scratch = vec![DerivativeScratch::new(); 3];
+    let mut matrix = vec![0.0; derivative_matrix_len(&model).max(operational_len(&model, 6))];
+    let [mut a, mut b, mut c] = [[0.0; NV]; 3];
+    let [mut d, mut e] = [(); 2].map(|()| vec![0.0; 6 * NV * NV]);
+    let [mut x, mut y, mut z] = [(); 3].map(|()| vec![0.0; NV * PARAMETERS * 3]);
+    let (mut inertia, mut parameter) = ([0.0; 36], vec![0.0; PARAMETERS * 3]);
+
+    let count = allocations(|| {
+        let state = State { q: &POSITIONS, qd: &qd, theta: &theta, thetad: &thetad };
+        let (ext, accel) = (External::none(), Acceleration { qdd: &tau, thetadd: &tau });
+        let work = &mut matrix[..derivative_matrix_len(&model)];
+        let value = Forward { qdd: &mut a, thetadd: &mut b, tau_j: &mut c };
+        let out = ForwardDerivatives { qdd: &mut d[..5 * NV * NV], thetadd: &mut e[..5 * NV * NV] };
+        forward_derivatives(&model, state, &tau, ext, &mut scratch, work, value, out).unwrap();
+        let out = InverseDerivatives { tau_j: &mut d, tau: &mut e };
+        inverse_derivatives(&model, state, accel, ext, &mut scratch, out).unwrap();
+
+        let [x, y, z] = [&mut x, &mut y, &mut z].map(Vec::as_mut_slice);
+        let square = NV * NV;
+        let out = CoriolisMatrices { c: &mut x[..square], c1: &mut y[..square], c2: &mut z[..square] };
+        coriolis_matrices(&model, state, &mut scratch, out).unwrap();
+        let out = InertiaRates { m: &mut x[..square], s: &mut y[..square] };
+        inertia_rates(&model, state, &mut scratch, out).unwrap();
+        bias(&model, state, &mut scratch, Bias { link: &mut a, motor: &mut b }).unwrap();
+        gravity_torques(&model, &POSITIONS, &mut scratch, &mut c).unwrap();
+        regressor(&model, state, accel, &mut scratch, Regressor { link: x, transmission: y, motor: z }).unwrap();
+        parameters(&model, &mut parameter).unwrap();
+
+        let frame = Frame { body: 2, placement: Transform::identity() };
+        let task = Task { frame, directions: &[0, 1, 2, 3, 4, 5], rotation: Rotation::Geometric, threshold: 1e-6 };
+        let out = OperationalSpace {
+            jacobian: &mut x[..6 * NV],
+            bias_acceleration: &mut a[..6],
+            inertia: &mut inertia,
+            inverse: &mut y[..6 * NV],
+            velocity_force: &mut b[..6],
+            gravity_force: &mut c[..6],
+        };
+        let work = &mut matrix[..operational_len(&model, 6)];
+        operational_space(&model, state, task, &mut scratch, work, out).unwrap();
+    });
+    assert_eq!(count, 0);
+    assert!(d.iter().chain(&e).chain(&y).chain(&inertia).all(|x: &f64| x.is_finite()));
 }
