@@ -1,5 +1,6 @@
 //! A model together with the scratch its algorithms need: allocated once, nothing per call.
 
+mod derivatives;
 mod matrices;
 
 use crate::error::{Error, ErrorKind};
@@ -24,6 +25,7 @@ pub struct Dynamics {
     moving: Vec<(Transform<f64>, Motion<f64>)>,
     work: Vec<f64>,
     derivative: Vec<DerivativeScratch<f64>>,
+    derivative_matrix: Vec<f64>,
     operational: Vec<f64>,
 }
 
@@ -43,6 +45,7 @@ impl Dynamics {
             moving: vec![(Transform::identity(), Motion::zero()); n],
             work: vec![0.0; work],
             derivative: vec![DerivativeScratch::new(); n],
+            derivative_matrix: vec![0.0; dynamics::derivative_matrix_len(&view)],
             operational: Vec::new(),
             model,
         }

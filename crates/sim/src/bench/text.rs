@@ -14,15 +14,15 @@ impl fmt::Display for Report {
         writeln!(f, "Every call is timed on its own; reading the clock takes {clock_ns} ns, which is taken off.\n")?;
         let wide = |title: &str| format!("{title:^30}");
         let head = format!("{}  {}", wide("time of a call [µs]"), wide("share of a 1 kHz period [%]"));
-        writeln!(f, "  {:34}{}", "", head.trim_end())?;
+        writeln!(f, "  {:36}{}", "", head.trim_end())?;
         let columns = ["median", "99.9 %", "maximum"].map(|c| format!("{c:>9}")).concat();
-        writeln!(f, "  {:<16}{:<18}{columns}   {columns}", "model", "algorithm")?;
+        writeln!(f, "  {:<16}{:<20}{columns}   {columns}", "model", "algorithm")?;
         for row in &self.rows {
             let Times { median_us, p999_us, max_us } = row.times;
             let all = [median_us, p999_us, max_us];
             let us = all.map(|t| format!("{:>9}", digits(t))).concat();
             let share = all.map(|t| format!("{:>9}", digits(100.0 * t / PERIOD))).concat();
-            writeln!(f, "  {:<16}{:<18}{us}   {share}", row.model, row.algorithm)?;
+            writeln!(f, "  {:<16}{:<20}{us}   {share}", row.model, row.algorithm)?;
         }
         if self.rows.is_empty() {
             writeln!(f, "  nothing was finished")?;

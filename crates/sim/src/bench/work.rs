@@ -3,8 +3,8 @@
 use super::states::Point;
 use crate::error::Error;
 use gyroflex::dynamics::{
-    self, AbaScratch, Acceleration, CrbaScratch, External, Forward, ForwardScratch, Inverse, JointSpaceScratch,
-    RneaScratch, State,
+    self, AbaScratch, Acceleration, CrbaScratch, DerivativeScratch, External, Forward, ForwardDerivatives,
+    ForwardScratch, Inverse, JointSpaceScratch, RneaScratch, State,
 };
 use gyroflex::integrate::{self, StateMut};
 use gyroflex::model::Model;
@@ -20,6 +20,8 @@ pub enum Algorithm {
     Inverse,
     /// [`dynamics::forward_dynamics`].
     Forward,
+    /// [`dynamics::forward_derivatives`].
+    ForwardDerivatives,
     /// [`dynamics::crba`].
     Matrix,
     /// [`dynamics::placements`].
@@ -30,13 +32,15 @@ pub enum Algorithm {
 
 impl Algorithm {
     /// All of them, in the order of the table.
-    pub const ALL: [Self; 5] = [Self::Inverse, Self::Forward, Self::Matrix, Self::Placements, Self::RungeKutta];
+    pub const ALL: [Self; 6] =
+        [Self::Inverse, Self::Forward, Self::ForwardDerivatives, Self::Matrix, Self::Placements, Self::RungeKutta];
 
     /// What people call it.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Inverse => "inverse dynamics",
             Self::Forward => "forward dynamics",
+            Self::ForwardDerivatives => "forward derivatives",
             Self::Matrix => "inertia matrix",
             Self::Placements => "link poses",
             Self::RungeKutta => "RK4 step",
@@ -53,6 +57,9 @@ pub(super) struct Work<'a> {
     rnea: Vec<RneaScratch<f64>>,
     crba: Vec<CrbaScratch<f64>>,
     poses: Vec<Transform<f64>>,
+    sensitivities: Vec<DerivativeScratch<f64>>,
+    derivative_matrix: Vec<f64>,
+    derivatives: [Vec<f64>; 2],
     mass: Vec<f64>,
     out: [Vec<f64>; 3],
     moving: [Vec<f64>; 4],
@@ -70,6 +77,9 @@ impl<'a> Work<'a> {
             rnea: vec![RneaScratch::new(); n],
             crba: vec![CrbaScratch::new(); n],
             poses: vec![Transform::identity(); n],
+            sensitivities: vec![DerivativeScratch::new(); n],
+            derivative_matrix: zeros(dynamics::derivative_matrix_len(&model)),
+            derivatives: [zeros(5 * nv * nv), zeros(5 * nv * nv)],
             mass: zeros(nv * nv),
             out: [zeros(nv), zeros(nv), zeros(nv)],
             moving: [zeros(nq), zeros(nv), zeros(nv), zeros(nv)],
@@ -88,7 +98,7 @@ impl<'a> Work<'a> {
 
     #[inline]
     pub(super) fn call(&mut self, algorithm: Algorithm, point: &Point) -> Result<(), Error> {
-        let Self { model, aba, joint_space, matrix, rnea, crba, poses, mass, out: [a, b, c], moving, steps } = self;
+        let Self { model, aba, joint_space, matrix, rnea, crba, poses, mass, out: [a, b, c], moving, steps, .. } = self;
         let Point { q, qd, theta, thetad, tau, qdd } = point;
         let state = State { q, qd, theta, thetad };
         let scratch = ForwardScratch { bodies: aba, joint_space, matrix };
@@ -101,6 +111,13 @@ impl<'a> Work<'a> {
             Algorithm::Forward => {
                 let out = Forward { qdd: a, thetadd: b, tau_j: c };
                 dynamics::forward_dynamics(model, state, tau, ext, scratch, out)
+            }
+            Algorithm::ForwardDerivatives => {
+                let value = Forward { qdd: a, thetadd: b, tau_j: c };
+                let [qdd, thetadd] = &mut self.derivatives;
+                let (scratch, matrix) = (&mut self.sensitivities, &mut self.derivative_matrix);
+                let out = ForwardDerivatives { qdd, thetadd };
+                dynamics::forward_derivatives(model, state, tau, ext, scratch, matrix, value, out)
             }
             Algorithm::Matrix => dynamics::crba(model, q, crba, mass),
             Algorithm::Placements => dynamics::placements(model, q, poses),
