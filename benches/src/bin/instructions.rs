@@ -44,7 +44,7 @@ fn main() -> std::io::Result<()> {
     println!("nothing");
     let arm = generated(Shape::Chain, 7);
     // Every step costs, so that one case stands for the others in showing that the count does not depend on the state.
-    cases::<f64>("arm7", &arm, Fidelity::Complete, "f64", 12);
+    cases::<f64>("arm7", &arm, Fidelity::Complete, "f64", 6);
     for fidelity in [Fidelity::Reduced, Fidelity::Rigid, Fidelity::RigidReflected] {
         cases::<f64>("arm7", &arm, fidelity, "f64", 2);
     }
