@@ -54,26 +54,33 @@ pub(super) fn invert<T: Scalar, F: Over<T>>(nv: usize, m: &mut [T], pivots: &mut
     }
 }
 
-/// `out ← Aᵀ B`, or `out + Aᵀ B` where `ONTO`. `A` is square with rows of `stride` entries, `B` and `out` have rows of `width`;
+/// Which part of a product is computed: `rows` rows of `width` entries, of which the first `columns`.
+#[derive(Clone, Copy)]
+pub(super) struct Part {
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+    pub(super) width: usize,
+}
+
+/// `out ← Aᵀ B`, or `out + Aᵀ B` where `ONTO`. `A` is square with rows of `stride` entries, `B` and `out` have rows of `part.width`;
 /// `terms(end)` says how many rows of `A` count for the rows of `out` before `end`.
 #[inline(always)]
 pub(super) fn transposed_times<T: Scalar, F: Over<T>, const ONTO: bool>(
-    nv: usize,
     (a, stride): (&[T], usize),
     terms: impl Fn(usize) -> usize,
     b: &[T],
     out: &mut [T],
-    width: usize,
+    part: Part,
 ) {
-    let mut row = 0;
+    let (mut row, nv) = (0, part.rows);
     while row + 4 <= nv {
-        rows::<T, F, 4, ONTO>((a, stride), terms(row + 4), b, out, (row, width));
+        rows::<T, F, 4, ONTO>((a, stride), terms(row + 4), b, out, (row, part));
         row += 4;
     }
     match nv - row {
-        3 => rows::<T, F, 3, ONTO>((a, stride), terms(nv), b, out, (row, width)),
-        2 => rows::<T, F, 2, ONTO>((a, stride), terms(nv), b, out, (row, width)),
-        1 => rows::<T, F, 1, ONTO>((a, stride), terms(nv), b, out, (row, width)),
+        3 => rows::<T, F, 3, ONTO>((a, stride), terms(nv), b, out, (row, part)),
+        2 => rows::<T, F, 2, ONTO>((a, stride), terms(nv), b, out, (row, part)),
+        1 => rows::<T, F, 1, ONTO>((a, stride), terms(nv), b, out, (row, part)),
         _ => {}
     }
 }
@@ -85,20 +92,20 @@ fn rows<T: Scalar, F: Over<T>, const R: usize, const ONTO: bool>(
     terms: usize,
     b: &[T],
     out: &mut [T],
-    (row, width): (usize, usize),
+    (row, Part { columns, width, .. }): (usize, Part),
 ) {
     let tile = |out: &[T], column| tile::<T, F, R, COLUMNS, ONTO>(a, terms, b, out, (row, width), column);
-    let whole = width - width % COLUMNS;
+    let whole = columns - columns % COLUMNS;
     // The last group reaches back, so that it is whole: taken first, put last.
-    let last = (whole < width && whole > 0).then(|| tile(out, width - COLUMNS));
+    let last = (whole < columns && whole > 0).then(|| tile(out, columns - COLUMNS));
     for column in (0..whole).step_by(COLUMNS) {
         let sums = tile(out, column);
         put(out, (row, width), column, sums);
     }
     match last {
-        Some(last) => put(out, (row, width), width - COLUMNS, last),
+        Some(last) => put(out, (row, width), columns - COLUMNS, last),
         None => {
-            for column in whole..width {
+            for column in whole..columns {
                 let sums = self::tile::<T, F, R, 1, ONTO>(a, terms, b, out, (row, width), column);
                 put(out, (row, width), column, sums);
             }

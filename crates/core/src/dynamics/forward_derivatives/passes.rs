@@ -151,8 +151,8 @@ impl<T: Scalar> Passes<'_, '_, T> {
             let products = row.iter().zip(left.iter());
             *qdd = products.fold(F::zero(), |sum, (m, left)| F::load(*m).mul_add(F::load(*left), sum)).store();
         }
-        for i in 0..model.bodies.len() {
-            let (body, s) = (&model.bodies[i], &scratch[i]);
+        for (i, body) in model.bodies.iter().enumerate() {
+            let s = &scratch[i];
             let k = body.v_index();
             let inertia = s.inertia.map(F::load);
             let before = s.a.map(F::load);
@@ -179,7 +179,7 @@ impl<T: Scalar> Passes<'_, '_, T> {
         let (model, state, scratch, qdd) = (self.model, self.state, &mut *self.scratch, &*self.value.qdd);
         let (r, rhs, d_thetadd) = (&mut *self.r, &mut *self.rhs, &mut *self.out.thetadd);
         let (nv, width) = (model.nv, 5 * model.nv);
-        let [q, qd, _, thetad, _] = [0, 1, 2, 3, 4].map(|block| block * nv);
+        let [q, qd, theta, thetad, tau] = [0, 1, 2, 3, 4].map(|block| block * nv);
         for (i, body) in model.bodies.iter().enumerate().rev() {
             let (k, s) = (body.v_index(), &mut scratch[i]);
             let mut beyond = s.beyond.map(F::load);
@@ -223,12 +223,14 @@ impl<T: Scalar> Passes<'_, '_, T> {
                     at,
                     #[inline(always)]
                     |on: OnCarrier<F>| {
-                        let turned = by_speed * on.speed;
-                        set(r, on.column * nv + k, -turned);
-                        for (block, on_rotor) in by.on_rotor.into_iter().enumerate() {
-                            add(rhs, on.column * width + block * nv + k, -(turned * on_rotor));
-                        }
-                        add(rhs, on.column * width + thetad + k, -(spin * on.across));
+                        let (turned, at) = (-(by_speed * on.speed), on.column * width + k);
+                        set(r, on.column * nv + k, turned);
+                        let [by_q, by_qd, by_theta, by_thetad, by_tau] = by.on_rotor.map(|by| turned * by);
+                        add(rhs, at + q, by_q);
+                        add(rhs, at + qd, by_qd);
+                        set(rhs, at + theta, by_theta);
+                        set(rhs, at + thetad, by_thetad - spin * on.across);
+                        set(rhs, at + tau, by_tau);
                         set(d_thetadd, k * width + q + on.column, -(by_speed * on.q));
                         set(d_thetadd, k * width + qd + on.column, -(by_speed * on.qd));
                     },
@@ -248,6 +250,17 @@ impl<T: Scalar> Passes<'_, '_, T> {
                     add(rhs, k * width + qd + on.column, -(spin * on.qd));
                 },
             );
+        }
+    }
+
+    /// Nothing depends on `θ` and `θ̇`, and all of `τ` acts on the links.
+    pub(super) fn without_elastic_joints(&mut self) {
+        let nv = self.model.nv;
+        let rows = self.out.qdd.chunks_exact_mut((5 * nv).max(1));
+        for (row, inverse) in rows.zip(self.inverse.chunks_exact(stride(nv).max(1))) {
+            let (by_motor, by_tau) = row[2 * nv..].split_at_mut(2 * nv);
+            by_motor.fill(T::zero());
+            by_tau.copy_from_slice(&inverse[..nv]);
         }
     }
 
