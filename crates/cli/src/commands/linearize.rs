@@ -1,0 +1,66 @@
+//! `gyroflex linearize`: a state-space model, printed or written.
+
+use super::{load, output, pose};
+use crate::args::Linearize;
+use crate::failure::{Failure, print, say, warn};
+use gyroflex_sim::ScenarioFile;
+use gyroflex_sim::error::Error;
+use gyroflex_sim::linearize::{
+    Linearization, Matrices, Output, ReferenceMotion, series_json, write_csv, write_mat, zero_order_hold_of,
+};
+use gyroflex_sim::load::Disk;
+
+pub fn run(args: &Linearize, quiet: bool) -> Result<(), Failure> {
+    let outputs = args.output.iter().map(|o| Output::parse(o.trim())).collect::<Result<Vec<_>, Error>>()?;
+    let mut series = models(args, &outputs, quiet)?;
+    if let Some(step) = args.zoh {
+        series = series.iter().map(|l| zero_order_hold_of(l, step)).collect::<Result<_, _>>()?;
+    }
+    let mut written = Vec::new();
+    if let Some(folder) = &args.csv {
+        written.extend(write_csv(&series, folder)?);
+    }
+    if let Some(path) = &args.mat {
+        output::spare_the_robot(path, &args.pose.robot)?;
+        write_mat(&series, path)?;
+        written.push(path.clone());
+    }
+    if !(written.is_empty() || quiet) {
+        let names: Vec<String> = written.iter().map(|p| p.display().to_string()).collect();
+        say(&format!("written: {}", names.join(", ")));
+    }
+    if !(args.json || written.is_empty()) {
+        return Ok(());
+    }
+    match (&args.scenario, series.first()) {
+        (None, Some(one)) => print(&serde_json::to_string_pretty(&Matrices::from(one)).map_err(Error::from)?),
+        _ => print(&series_json(&series)?),
+    }
+}
+
+/// One model at a pose, or one an instant.
+fn models(args: &Linearize, outputs: &[Output], quiet: bool) -> Result<Vec<Linearization>, Failure> {
+    let Some(scenario) = &args.scenario else {
+        let mut linearizer = pose::linearizer(&args.pose, quiet)?;
+        let point = match &args.tau {
+            Some(tau) => {
+                let tau = pose::torques(&linearizer, tau)?;
+                let start = pose::positions(&linearizer, &args.pose)?;
+                linearizer.equilibrium_for(&tau, &start)?
+            }
+            None => pose::equilibrium(&mut linearizer, &args.pose, quiet)?,
+        };
+        return Ok(vec![linearizer.linearize(&point, outputs)?]);
+    };
+    let robot = load(&args.pose.robot, args.pose.floating, quiet)?;
+    let file = ScenarioFile::load(&Disk, scenario)?;
+    let fidelity = args.pose.model.map(Into::into);
+    let mut motion = ReferenceMotion::new(&robot, &file, fidelity, args.pose.friction.into())?;
+    warn(&motion.warnings, quiet);
+    let mut series = Vec::with_capacity(args.at.len());
+    for &t in &args.at {
+        let point = motion.at(t)?;
+        series.push(motion.linearizer().linearize(&point, outputs)?);
+    }
+    Ok(series)
+}

@@ -1,0 +1,235 @@
+//! Frequency response of a joint: from its motor's torque to the positions of its motor and of its link.
+
+use super::natural::eigenvalues;
+use super::{Linearization, Linearizer, ModeKind, NaturalMode, OperatingPoint, Output, natural_modes};
+use crate::error::{Error, ErrorKind};
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
+use nalgebra::{Complex, DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Which frequencies to look at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sweep {
+    /// The first one [Hz]; default: well below the slowest mode.
+    pub from: Option<f64>,
+    /// The last one [Hz]; default: well above the fastest mode.
+    pub to: Option<f64>,
+    /// How many; default: 500.
+    pub points: Option<usize>,
+}
+
+/// A peak or a dip of a response's magnitude.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Extreme {
+    /// Frequency [Hz].
+    pub frequency: f64,
+    /// Magnitude there [rad/(N m), or m/N]; `None` where an undamped resonance has none.
+    pub magnitude: Option<f64>,
+}
+
+/// The response of a joint to its own motor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// Name of the joint.
+    pub joint: String,
+    /// Frequencies [Hz].
+    pub frequency: Vec<f64>,
+    /// Motor position per motor torque, both reflected [rad/(N m), or m/N].
+    pub motor: Vec<Complex<f64>>,
+    /// Link position per motor torque [rad/(N m), or m/N].
+    pub link: Vec<Complex<f64>>,
+    /// Peaks of the motor's response.
+    pub resonances: Vec<Extreme>,
+    /// Dips of the motor's response.
+    pub antiresonances: Vec<Extreme>,
+    /// The modes of the robot.
+    pub modes: Vec<NaturalMode>,
+}
+
+const POINTS: usize = 500;
+/// Frequencies beyond this have no meaning for a robot [Hz].
+const HIGHEST: f64 = 1e9;
+
+/// The response of the joint of that name about an operating point.
+///
+/// # Errors
+/// An unknown joint, or a range of frequencies that is none.
+pub fn frequency_response(
+    of: &mut Linearizer,
+    point: &OperatingPoint,
+    joint: &str,
+    sweep: Sweep,
+) -> Result<Response, Error> {
+    let k = of.layout.find(joint)?;
+    let linear = of.linearize(point, &Output::defaults())?;
+    let modes = natural_modes(&linear)?;
+    let input = of.layout.inputs().iter().position(|i| *i == k).unwrap_or(0);
+    let system = System::new(&linear, input, [of.layout.motor(k), k]);
+    let frequency = frequencies(sweep, &modes)?;
+    let (Some(&from), Some(&to)) = (frequency.first(), frequency.last()) else {
+        return Err(fault("there are no frequencies", "give two points or more"));
+    };
+    let mut motor = Vec::with_capacity(frequency.len());
+    let mut link = Vec::with_capacity(frequency.len());
+    for &f in &frequency {
+        let [m, l] = system.at(f).ok_or_else(|| {
+            fault(&format!("the robot is undamped and resonates at exactly {f} Hz"), "shift the range a little")
+        })?;
+        motor.push(m);
+        link.push(l);
+    }
+    // Sharp peaks and dips lie at poles and zeros: where to look besides the sweep.
+    let mut grid = frequency.clone();
+    grid.extend(logarithmic(from, to, POINTS));
+    grid.extend(modes.iter().filter(|m| m.kind == ModeKind::Oscillation).map(|m| m.eigenvalue[1] / TAU));
+    grid.extend(system.zeros()?);
+    grid.retain(|f| (from..=to).contains(f));
+    grid.sort_by(f64::total_cmp);
+    grid.dedup();
+    let (resonances, antiresonances) = extremes(&grid, |f| system.at(f).map_or(f64::INFINITY, |[m, _]| m.norm()));
+    Ok(Response { joint: joint.to_owned(), frequency, motor, link, resonances, antiresonances, modes })
+}
+
+/// One input and two positions of a linear model.
+struct System {
+    a: DMatrix<f64>,
+    b: DVector<f64>,
+    outputs: [usize; 2],
+    scale: DVector<f64>,
+}
+
+impl System {
+    fn new(linear: &Linearization, input: usize, outputs: [usize; 2]) -> Self {
+        let mut a = linear.a.clone();
+        let scale = balance_parlett_reinsch(&mut a);
+        let b = linear.b.column(input).component_div(&scale);
+        Self { a, b, outputs, scale }
+    }
+
+    /// `C (jω − A)⁻¹ B` at a frequency [Hz]; `None` at an undamped pole. Positions answer with no direct term.
+    fn at(&self, frequency: f64) -> Option<[Complex<f64>; 2]> {
+        let n = self.a.nrows();
+        let jw = Complex::new(0.0, TAU * frequency);
+        let matrix = DMatrix::from_diagonal_element(n, n, jw) - self.a.map(|x| Complex::new(x, 0.0));
+        let x = matrix.lu().solve(&self.b.map(|x| Complex::new(x, 0.0)))?;
+        let [m, l] = self.outputs.map(|i| x[i] * self.scale[i]);
+        (m.norm().is_finite() && l.norm().is_finite()).then_some([m, l])
+    }
+
+    /// Frequencies of the zeros of the motor's response [Hz]: those at which the rest of the robot swings while this motor is held,
+    /// eigenvalues of `A − b c A² / (c A b)`.
+    fn zeros(&self) -> Result<Vec<f64>, Error> {
+        let c_a = self.a.row(self.outputs[0]).into_owned();
+        let gain = (&c_a * &self.b)[0];
+        if gain == 0.0 {
+            return Ok(Vec::new());
+        }
+        let held = &self.a - &self.b * ((&c_a * &self.a) / gain);
+        Ok(eigenvalues(&held)?.into_iter().filter(|l| l.im > 0.0).map(|l| l.im / TAU).collect())
+    }
+}
+
+/// `points` frequencies in equal ratios, both ends included.
+pub fn logarithmic(from: f64, to: f64, points: usize) -> impl Iterator<Item = f64> {
+    let last = points.saturating_sub(1).max(1) as f64;
+    (0..points).map(move |i| match i {
+        0 => from,
+        _ if i + 1 == points => to,
+        _ => from * (to / from).powf(i as f64 / last),
+    })
+}
+
+/// Magnitudes and phases [rad] of a response over rising frequencies, the phases without jumps of a turn.
+pub fn bode(response: &[Complex<f64>]) -> [Vec<f64>; 2] {
+    let mut before = 0.0;
+    let phases = response.iter().map(|z| {
+        // Negative numbers lag by half a turn, whatever the sign of the zero beside them.
+        let phase = if z.im.abs() <= 1e-12 * z.re.abs() && z.re < 0.0 { -0.5 * TAU } else { z.arg() };
+        before = phase - TAU * ((phase - before) / TAU).round();
+        before
+    });
+    [response.iter().map(|z| z.norm()).collect(), phases.collect()]
+}
+
+fn frequencies(sweep: Sweep, modes: &[NaturalMode]) -> Result<Vec<f64>, Error> {
+    let swings = || modes.iter().filter(|m| m.kind == ModeKind::Oscillation).map(|m| m.frequency);
+    let slowest = swings().fold(f64::INFINITY, f64::min);
+    let fastest = swings().fold(0.0, f64::max);
+    let (low, high) = if fastest > 0.0 { (slowest / 5.0, fastest * 5.0) } else { (0.01, 100.0) };
+    let from = sweep.from.unwrap_or_else(|| sweep.to.map_or(low, |to| low.min(to / 10.0)));
+    let to = sweep.to.unwrap_or_else(|| high.max(from * 10.0));
+    let points = sweep.points.unwrap_or(POINTS);
+    if !(from > 0.0 && to > from && to <= HIGHEST) {
+        let problem = format!("from {from} Hz to {to} Hz is no range of frequencies");
+        return Err(fault(&problem, "give two frequencies above zero, the smaller one first"));
+    }
+    if points < 2 {
+        return Err(fault(&format!("{points} points are asked for"), "give two points or more"));
+    }
+    Ok(logarithmic(from, to, points).collect())
+}
+
+/// Peaks and dips between the points of a grid, refined, without pairs that lie within a hundredth of each other's magnitude.
+fn extremes(grid: &[f64], size: impl Fn(f64) -> f64) -> (Vec<Extreme>, Vec<Extreme>) {
+    let log = |f: f64| size(f).ln();
+    let values: Vec<f64> = grid.iter().map(|f| log(*f)).collect();
+    // Peaks (true) and dips in turn, as (is it a peak, frequency, log of magnitude).
+    let mut found: Vec<(bool, f64, f64)> = Vec::new();
+    for i in 1..grid.len().saturating_sub(1) {
+        let [a, b, c] = [values[i - 1], values[i], values[i + 1]];
+        let peak = b > a && b >= c;
+        if !(peak || b < a && b <= c) {
+            continue;
+        }
+        let sign = if peak { -1.0 } else { 1.0 };
+        let (f, value) = golden(grid[i - 1], grid[i], grid[i + 1], |f| sign * log(f));
+        found.push((peak, f, sign * value));
+    }
+    const SLIGHT: f64 = 0.01;
+    loop {
+        let rise = |i: usize| (found[i].2 - found[i + 1].2).abs();
+        let least = (0..found.len().saturating_sub(1)).min_by(|a, b| rise(*a).total_cmp(&rise(*b)));
+        match least.filter(|i| rise(*i) < SLIGHT) {
+            Some(i) => drop(found.drain(i..i + 2)),
+            None => break,
+        }
+    }
+    let pick = |peaks: bool| {
+        let chosen = found.iter().filter(|e| e.0 == peaks);
+        chosen
+            .map(|e| Extreme { frequency: e.1, magnitude: Some(e.2.exp()).filter(|m| m.is_finite()) })
+            .collect::<Vec<_>>()
+    };
+    (pick(true), pick(false))
+}
+
+/// The lowest point between `low` and `high` by golden sections, `middle` being lower than both, and the value there.
+fn golden(mut low: f64, mut middle: f64, mut high: f64, f: impl Fn(f64) -> f64) -> (f64, f64) {
+    const SECTION: f64 = 0.381_966_011_250_105_1;
+    let mut best = f(middle);
+    for _ in 0..100 {
+        if high - low <= 1e-12 * middle || best == f64::NEG_INFINITY {
+            break;
+        }
+        let right = high - middle > middle - low;
+        let next = if right { middle + SECTION * (high - middle) } else { middle - SECTION * (middle - low) };
+        let value = f(next);
+        match (value < best, right) {
+            (true, true) => (low, middle, best) = (middle, next, value),
+            (true, false) => (high, middle, best) = (middle, next, value),
+            (false, true) => high = next,
+            (false, false) => low = next,
+        }
+    }
+    (middle, best)
+}
+
+fn fault(problem: &str, remedy: &str) -> Error {
+    Error {
+        kind: ErrorKind::Shape,
+        file: String::new(),
+        element: "frequency response".to_owned(),
+        problem: problem.to_owned(),
+        remedy: remedy.to_owned(),
+    }
+}
