@@ -6,7 +6,6 @@
 //!
 //!     ẋ = A x + B u,    y = C x + D u.
 
-pub mod differences;
 mod discrete;
 mod friction;
 mod layout;
@@ -98,9 +97,9 @@ impl Linearizer {
     ///
     /// # Errors
     /// Vectors that do not fit the robot, an output it does not have, or a point where its accelerations are not finite.
-    pub fn linearize(&mut self, point: &OperatingPoint, outputs: &[Output]) -> Result<Linearization, Error> {
-        let partials = partials(&mut self.dynamics, &point.state, &point.tau)?;
-        let rows = outputs::rows(self, point, outputs)?;
+    pub fn linearize(&self, point: &OperatingPoint, outputs: &[Output]) -> Result<Linearization, Error> {
+        let partials = partials(&self.dynamics, &point.state, &point.tau)?;
+        let rows = outputs::rows(self, point, &partials, outputs)?;
         let linear = Linearization {
             a: self.state_matrix(point, &partials),
             b: self.input_matrix(&partials),
@@ -139,12 +138,12 @@ impl Linearizer {
                 _ => (&partials.thetadd, layout.elastic()[row - nv]),
             };
             for (column, k) in (0..nv).enumerate() {
-                a[(half + row, column)] = of.q[r * nv + k];
-                a[(half + row, half + column)] = of.qd[r * nv + k];
+                a[(half + row, column)] = of.q[(r, k)];
+                a[(half + row, half + column)] = of.qd[(r, k)];
             }
             for (column, &k) in layout.elastic().iter().enumerate() {
-                a[(half + row, nv + column)] = of.theta[r * nv + k];
-                a[(half + row, half + nv + column)] = of.thetad[r * nv + k];
+                a[(half + row, nv + column)] = of.theta[(r, k)];
+                a[(half + row, half + nv + column)] = of.thetad[(r, k)];
             }
         }
         a
@@ -158,8 +157,8 @@ impl Linearizer {
             let k = layout.inputs()[column];
             match row.checked_sub(half) {
                 None => 0.0,
-                Some(r) if r < nv => partials.qdd.tau[r * nv + k],
-                Some(r) => partials.thetadd.tau[layout.elastic()[r - nv] * nv + k],
+                Some(r) if r < nv => partials.qdd.tau[(r, k)],
+                Some(r) => partials.thetadd.tau[(layout.elastic()[r - nv], k)],
             }
         })
     }

@@ -1,11 +1,10 @@
 //! What a linear model shows of its state.
 
-use super::differences::{Argument, differences};
-use super::{Linearizer, OperatingPoint};
+use super::{Linearizer, OperatingPoint, Partials};
 use crate::error::{Error, ErrorKind};
 use crate::load::nearest::nearest;
 use gyroflex::dynamics::{Axes, Frame, jacobian};
-use gyroflex::model::Body;
+use gyroflex::model::{Elastic, Knot, TransmissionError};
 use gyroflex::spatial::Transform;
 use nalgebra::DMatrix;
 
@@ -78,7 +77,12 @@ pub(super) struct Rows {
     pub(super) names: Vec<String>,
 }
 
-pub(super) fn rows(of: &mut Linearizer, point: &OperatingPoint, outputs: &[Output]) -> Result<Rows, Error> {
+pub(super) fn rows(
+    of: &Linearizer,
+    point: &OperatingPoint,
+    partials: &Partials,
+    outputs: &[Output],
+) -> Result<Rows, Error> {
     if outputs.is_empty() {
         return Err(fault("none is asked for".to_owned(), "name at least one, e.g. `motor-position`".to_owned()));
     }
@@ -100,64 +104,61 @@ pub(super) fn rows(of: &mut Linearizer, point: &OperatingPoint, outputs: &[Outpu
             Output::MotorVelocity => unit("motor_velocity", &|k| half + of.layout.motor(k)),
             Output::LinkPosition => unit("link_position", &|k| k),
             Output::LinkVelocity => unit("link_velocity", &|k| half + k),
-            Output::JointTorque => joint_torques(of, point, first, &mut rows)?,
+            Output::JointTorque => joint_torques(of, point, partials, first, &mut rows),
             Output::Pose(link) => pose(of, point, link, first, &mut rows)?,
         }
     }
     Ok(rows)
 }
 
-/// Torques through transmissions: `τ_J = k(δ) + D δ̇` where they are elastic; through a rigid gear whatever is left of the motor's.
-fn joint_torques(of: &mut Linearizer, point: &OperatingPoint, first: usize, rows: &mut Rows) -> Result<(), Error> {
-    let (layout, nv) = (of.layout.clone(), of.layout.nv());
-    let half = layout.positions();
-    let elastic = |body: &&Body<f64>| body.is_elastic();
-    let rigid = of.dynamics.model().bodies().iter().any(|b| !b.is_elastic());
-    let mut by = |argument| differences(&mut of.dynamics, &point.state, &point.tau, argument).map(|d| d.tau_j);
-    let through_gears = match rigid {
-        true => Some([
-            (0, by(Argument::Q)?),
-            (nv, by(Argument::Theta)?),
-            (half, by(Argument::Qd)?),
-            (half + nv, by(Argument::Thetad)?),
-            (usize::MAX, by(Argument::Tau)?),
-        ]),
-        false => None,
-    };
-    for (i, &k) in layout.inputs().iter().enumerate() {
+/// Torques through the transmissions.
+fn joint_torques(of: &Linearizer, point: &OperatingPoint, partials: &Partials, first: usize, rows: &mut Rows) {
+    let (layout, model) = (&of.layout, of.dynamics.model());
+    let (nv, half) = (layout.nv(), layout.positions());
+    for (row, &k) in layout.inputs().iter().enumerate().map(|(i, k)| (first + i, k)) {
         rows.names.push(format!("joint_torque.{}", layout.joint(k)));
-        let model = of.dynamics.model();
-        let body = model.bodies().iter().filter(elastic).find(|b| b.v_index() == k);
-        let row = first + i;
-        if let Some((body, drive)) = body.and_then(|b| Some((b, b.drive.as_ref()?)))
+        if let Some(body) = model.bodies().iter().find(|b| b.v_index() == k)
+            && let Some(drive) = &body.drive
             && let Some(elastic) = &drive.elastic
         {
-            let ratio = drive.rotor.gear_ratio;
-            let (theta, thetad) = (point.state.theta[k], point.state.thetad[k]);
-            let (e, slope) = elastic.error.map_or((0.0, 0.0), |e| e.value_and_slope(theta, ratio));
-            // e'' = −(c N)² e, since e is a sine of c N θ.
-            let bend = elastic.error.map_or(0.0, |x| -(x.cycles_per_rotor_turn * ratio).powi(2) * e);
-            let deflection = theta - point.state.q[body.q_index()] - e;
-            let tangent = elastic.spring.slope(deflection, model.knots());
+            let (q, theta, thetad) = (point.state.q[body.q_index()], point.state.theta[k], point.state.thetad[k]);
+            let by = spring_and_damper(elastic, drive.rotor.gear_ratio, model.knots(), [q, theta, thetad]);
             let motor = layout.motor(k);
-            rows.c[(row, k)] = -tangent;
-            rows.c[(row, motor)] = tangent * (1.0 - slope) - elastic.damping * bend * thetad;
-            rows.c[(row, half + k)] = -elastic.damping;
-            rows.c[(row, half + motor)] = elastic.damping * (1.0 - slope);
+            for (column, entry) in [k, motor, half + k, half + motor].into_iter().zip(by) {
+                rows.c[(row, column)] = entry;
+            }
             continue;
         }
-        for (place, numbers) in through_gears.iter().flatten() {
-            let entry = |column: usize| numbers[k * nv + column];
-            if *place == usize::MAX {
-                layout.inputs().iter().enumerate().for_each(|(j, c)| rows.d[(row, j)] = entry(*c));
-            } else if *place == 0 || *place == half {
-                (0..nv).for_each(|c| rows.c[(row, place + c)] = entry(c));
-            } else {
-                layout.elastic().iter().enumerate().for_each(|(j, c)| rows.c[(row, place + j)] = entry(*c));
-            }
+        // Through a rigid gear goes what the rotor leaves of the motor's torque, which depends on everything.
+        let by = &partials.tau_j;
+        rows.c.view_mut((row, 0), (1, nv)).copy_from(&by.q.row(k));
+        rows.c.view_mut((row, half), (1, nv)).copy_from(&by.qd.row(k));
+        for (i, &of) in layout.elastic().iter().enumerate() {
+            rows.c[(row, nv + i)] = by.theta[(k, of)];
+            rows.c[(row, half + nv + i)] = by.thetad[(k, of)];
+        }
+        for (i, &of) in layout.inputs().iter().enumerate() {
+            rows.d[(row, i)] = by.tau[(k, of)];
         }
     }
-    Ok(())
+}
+
+/// Derivatives of `τ_J = k(δ) + D δ̇`, `δ = θ − q − e(θ)`, by `q, θ, q̇, θ̇`.
+fn spring_and_damper(
+    elastic: &Elastic<f64>,
+    ratio: f64,
+    knots: &[Knot<f64>],
+    [q, theta, thetad]: [f64; 3],
+) -> [f64; 4] {
+    let (e, slope) = elastic.error.map_or((0.0, 0.0), |e| e.value_and_slope(theta, ratio));
+    let curvature = elastic.error.map_or(0.0, |x| curvature(&x, e, ratio));
+    let (stiffness, damping) = (elastic.spring.slope(theta - q - e, knots), elastic.damping);
+    [-stiffness, stiffness * (1.0 - slope) - damping * curvature * thetad, -damping, damping * (1.0 - slope)]
+}
+
+/// `e'' = −(c N)² e`, since `e` is a sine of `c N θ` [1/rad].
+pub(super) fn curvature(error: &TransmissionError<f64>, e: f64, ratio: f64) -> f64 {
+    -(error.cycles_per_rotor_turn * ratio).powi(2) * e
 }
 
 /// Small motions of a link's frame: its Jacobian in world axes.

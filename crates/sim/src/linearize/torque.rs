@@ -1,8 +1,10 @@
 //! Equilibrium for given motor torques: the pose at which they hold the robot.
 
+use super::outputs::curvature;
 use super::point::check;
 use super::{Linearizer, OperatingPoint};
 use crate::error::{Error, ErrorKind};
+use gyroflex::dynamics::{Acceleration, DerivativeScratch, External, InverseDerivatives, inverse_derivatives};
 use gyroflex::integrate::integrate;
 use nalgebra::{DMatrix, DVector};
 
@@ -10,8 +12,6 @@ use nalgebra::{DMatrix, DVector};
 const MAX_STEPS: usize = 100;
 /// Relative to the largest torque in play.
 const TOLERANCE: f64 = 1e-10;
-/// Half the width of the difference that gives the stiffness [rad or m].
-const STEP: f64 = 1e-5;
 /// Poses differ by less than this in one step [rad or m].
 const REACH: f64 = 0.5;
 
@@ -74,21 +74,34 @@ impl Linearizer {
         ))
     }
 
-    /// `∂τ/∂q` of the statics [N m/rad], by central differences.
-    fn stiffness(&mut self, point: &OperatingPoint) -> Result<DMatrix<f64>, Error> {
-        let nv = self.layout.nv();
-        let mut stiffness = DMatrix::zeros(nv, nv);
-        for k in 0..nv {
-            let mut step = vec![0.0; nv];
-            for sign in [1.0, -1.0] {
-                step[k] = sign * STEP;
-                let q = self.moved(point, &step)?;
-                let tau = DVector::from_vec(self.equilibrium_at(&q)?.tau);
-                let mut column = stiffness.column_mut(k);
-                column += tau * (sign / (2.0 * STEP));
-            }
+    /// `∂τ/∂q` of the statics [N m/rad]: that of inverse dynamics at rest, and where the transmission is elastic,
+    /// `∂τ = (1 − e') ∂τ_J − e'' τ_J ∂θ` with `(1 − e') ∂θ = ∂q + ∂τ_J / k'(δ)`.
+    fn stiffness(&self, point: &OperatingPoint) -> Result<DMatrix<f64>, Error> {
+        let (model, nv) = (self.dynamics.model(), self.layout.nv());
+        let rest = vec![0.0; nv];
+        let [mut tau_j, mut tau] = [(); 2].map(|()| vec![0.0; 6 * nv * nv]);
+        let mut scratch = vec![DerivativeScratch::new(); model.bodies().len()];
+        let accel = Acceleration { qdd: &rest, thetadd: &rest };
+        let out = InverseDerivatives { tau_j: &mut tau_j, tau: &mut tau };
+        inverse_derivatives(&model, point.state.view(), accel, External::none(), &mut scratch, out)?;
+        let by_pose = |all: &[f64]| DMatrix::from_row_slice(nv, 6 * nv, all).columns(0, nv).into_owned();
+        let (on_joint, mut on_motor) = (by_pose(&tau_j), by_pose(&tau));
+        for body in model.bodies() {
+            let Some(drive) = &body.drive else { continue };
+            let Some(elastic) = &drive.elastic else { continue };
+            let (k, ratio, theta) = (body.v_index(), drive.rotor.gear_ratio, point.state.theta[body.v_index()]);
+            let (e, slope) = elastic.error.map_or((0.0, 0.0), |e| e.value_and_slope(theta, ratio));
+            let bend = elastic.error.map_or(0.0, |x| curvature(&x, e, ratio));
+            let deflection = theta - point.state.q[body.q_index()] - e;
+            let (through, stiffness) =
+                (elastic.spring.torque(deflection, model.knots()), elastic.spring.slope(deflection, model.knots()));
+            let share = 1.0 - slope;
+            let mut row = on_joint.row(k).into_owned();
+            row *= share - bend * through / (share * stiffness);
+            row[k] -= bend * through / share;
+            on_motor.set_row(k, &row);
         }
-        Ok(stiffness)
+        Ok(on_motor)
     }
 
     fn moved(&self, point: &OperatingPoint, step: &[f64]) -> Result<Vec<f64>, Error> {
