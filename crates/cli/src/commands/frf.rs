@@ -13,7 +13,7 @@ pub fn run(args: &Frf, quiet: bool) -> Result<(), Failure> {
     let mut linearizer = pose::linearizer(&args.pose, quiet)?;
     let point = pose::equilibrium(&mut linearizer, &args.pose, quiet)?;
     let sweep = Sweep { from: args.from, to: args.to, points: Some(args.points as usize) };
-    let response = frequency_response(&mut linearizer, &point, &args.joint, sweep)
+    let response = frequency_response(&linearizer, &point, &args.joint, sweep)
         .map_err(|e| if e.element == "joint" { Error { element: "--joint".to_owned(), ..e } } else { e })?;
     let robot = linearizer.robot();
     let sliding = robot.joints.iter().any(|j| j.name == args.joint && j.urdf_type == "prismatic");

@@ -42,7 +42,7 @@ pub fn run(args: &Modes, quiet: bool) -> Result<(), Failure> {
     out += &line(["kind", "frequency [Hz]", "damping ratio", "moves most"], "shape");
     for mode in &modes {
         let frequency = if mode.kind == ModeKind::Rigid { "0".to_owned() } else { plot::digits(mode.frequency) };
-        let damping = mode.damping_ratio.map_or("-".to_owned(), |z| format!("{z:.4}"));
+        let damping = mode.damping_ratio.map_or("-".to_owned(), ratio);
         out += &line([kind(mode.kind), &frequency, &damping, &mode.moves_most], &shape(mode, positions));
     }
     out.push_str("  (frequencies are |λ|/2π; shapes are relative to what moves most, links q and motors θ seen from the link side)");
@@ -56,6 +56,11 @@ fn kind(kind: ModeKind) -> &'static str {
         ModeKind::Growth => "growth",
         ModeKind::Rigid => "rigid",
     }
+}
+
+/// Four digits, rounding of an undamped mode without its sign.
+fn ratio(z: f64) -> String {
+    if z.abs() < 5e-5 { "0.0000".to_owned() } else { format!("{z:.4}") }
 }
 
 /// What else moves: the largest entries but the first, with the sign of their real part.

@@ -16,13 +16,16 @@ use std::path::Path;
 
 /// Letters for every machine, those without fonts included; see `font/LICENSE`.
 const FONT: &[u8] = include_bytes!("font/plot-sans.ttf");
-/// Dots of a PNG per unit of the drawing.
-const FINENESS: u32 = 2;
+/// Places per unit of the drawing.
+const FINENESS: u32 = 4;
+/// Places per dot of a PNG.
+const SMOOTH: u32 = 2;
 
 /// Colours that everybody can tell apart (Okabe, Ito), and greys.
 const BLUE: RGBColor = RGBColor(0, 114, 178);
 const ORANGE: RGBColor = RGBColor(213, 94, 0);
-const GREY: RGBColor = RGBColor(140, 140, 140);
+const GREY: RGBColor = RGBColor(120, 120, 120);
+const LIGHT: RGBColor = RGBColor(180, 180, 180);
 const PALE: RGBColor = RGBColor(225, 225, 225);
 const BLACK: RGBColor = RGBColor(0, 0, 0);
 
@@ -43,22 +46,39 @@ fn picture(path: &Path, size: (u32, u32), drawing: &impl Drawing) -> Result<Vec<
     };
     register_font("sans-serif", FontStyle::Normal, FONT)
         .map_err(|_| failed("the font of the program cannot be read".to_owned()))?;
+    let dots_wide = (size.0 * FINENESS, size.1 * FINENESS);
     if path.extension().is_some_and(|e| e == "svg") {
         let mut text = String::new();
-        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        drawing
-            .draw(&Canvas::new(&area, 1.0))
-            .and_then(|()| area.present().map_err(|e| e.to_string()))
-            .map_err(failed)?;
+        let area = SVGBackend::with_string(&mut text, dots_wide).into_drawing_area();
+        let canvas = Canvas::new(&area, f64::from(FINENESS));
+        drawing.draw(&canvas).and_then(|()| area.present().map_err(|e| e.to_string())).map_err(failed)?;
         drop(area);
-        return Ok(text.into_bytes());
+        // The size on the screen; the view box keeps the places fine.
+        let fine = format!("width=\"{}\" height=\"{}\"", dots_wide.0, dots_wide.1);
+        return Ok(text.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", size.0, size.1), 1).into_bytes());
     }
-    let (width, height) = (size.0 * FINENESS, size.1 * FINENESS);
-    let mut dots = vec![0; 3 * (width * height) as usize];
-    let area = BitMapBackend::with_buffer(&mut dots, (width, height)).into_drawing_area();
+    let mut dots = vec![0; 3 * (dots_wide.0 * dots_wide.1) as usize];
+    let area = BitMapBackend::with_buffer(&mut dots, dots_wide).into_drawing_area();
     drawing.draw(&Canvas::new(&area, f64::from(FINENESS))).map_err(failed)?;
     drop(area);
-    png(width, height, &dots).map_err(|e| failed(e.to_string()))
+    let (width, height) = (size.0 * FINENESS / SMOOTH, size.1 * FINENESS / SMOOTH);
+    png(width, height, &averaged(&dots, width as usize)).map_err(|e| failed(e.to_string()))
+}
+
+/// One dot of `width` a row for every `SMOOTH × SMOOTH` dots, so that slanting lines have no stairs.
+fn averaged(fine: &[u8], width: usize) -> Vec<u8> {
+    let many = SMOOTH as usize;
+    let row = 3 * width * many;
+    let mut dots = Vec::with_capacity(fine.len() / (many * many));
+    for rows in fine.chunks_exact(row * many) {
+        for i in 0..3 * width {
+            let first = i / 3 * 3 * many + i % 3;
+            let of = |r: usize, c: usize| usize::from(rows[r * row + first + 3 * c]);
+            let sum: usize = (0..many * many).map(|k| of(k / many, k % many)).sum();
+            dots.push((sum / (many * many)) as u8);
+        }
+    }
+    dots
 }
 
 fn png(width: u32, height: u32, dots: &[u8]) -> Result<Vec<u8>, png::EncodingError> {

@@ -84,15 +84,21 @@ impl Panel {
         canvas.line(&frame, GREY, 1.0)
     }
 
-    /// A curve.
+    /// A curve, as far as it is inside.
     pub(super) fn curve<B: DrawingBackend>(
         &self,
         canvas: &Canvas<B>,
         points: impl Iterator<Item = (f64, f64)>,
         colour: RGBColor,
     ) -> Result<(), String> {
-        let points: Vec<(f64, f64)> = points.map(|(x, y)| self.place(x, y)).collect();
-        canvas.line(&points, colour, 1.6)
+        let [low, high] = self.y.ends;
+        let inside = |(_, y): &(f64, f64)| (low..=high).contains(y);
+        let points: Vec<(f64, f64)> = points.collect();
+        for piece in points.split(|p| !inside(p)).filter(|piece| piece.len() > 1) {
+            let places: Vec<(f64, f64)> = piece.iter().map(|(x, y)| self.place(*x, *y)).collect();
+            canvas.line(&places, colour, 1.6)?;
+        }
+        Ok(())
     }
 }
 

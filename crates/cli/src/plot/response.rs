@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas};
 use super::panel::{Axis, Panel};
-use super::{BLACK, BLUE, Drawing, GREY, ORANGE, digits, picture};
+use super::{BLACK, BLUE, Drawing, GREY, LIGHT, ORANGE, digits, picture};
 use gyroflex_sim::error::Error;
 use gyroflex_sim::linearize::{Response, bode};
 use plotters::prelude::DrawingBackend;
@@ -42,9 +42,8 @@ impl Drawing for Bode<'_> {
         let upper = Panel { left: LEFT, right: RIGHT, top: 56.0, bottom: 350.0, x: axis.clone(), y };
         upper.draw(canvas, false)?;
         self.marks(canvas, &upper)?;
-        let low = upper.y.ends[0];
         for (colour, values) in [(ORANGE, &link), (BLUE, &motor)] {
-            upper.curve(canvas, r.frequency.iter().zip(values).map(|(f, y)| (*f, y.max(low))), colour)?;
+            upper.curve(canvas, r.frequency.iter().zip(values).map(|(f, y)| (*f, *y)), colour)?;
         }
 
         let degrees = |v: &[f64]| -> Vec<f64> { v.iter().map(|x| x.to_degrees()).collect() };
@@ -76,7 +75,7 @@ impl Bode<'_> {
         let mut free = 0.0;
         for f in marks {
             let x = panel.place(f, panel.y.ends[0]).0;
-            canvas.line(&[(x, panel.top), (x, panel.bottom)], GREY, 1.0)?;
+            canvas.line(&[(x, panel.top), (x, panel.bottom)], LIGHT, 1.0)?;
             if x > free {
                 canvas.text(&digits(f), (x, panel.top - 16.0), Anchor::Below, 11.0, GREY)?;
                 free = x + 46.0;

@@ -53,24 +53,21 @@ pub fn natural_modes(linear: &Linearization) -> Result<Vec<NaturalMode>, Error> 
     if half == 0 {
         return Ok(Vec::new());
     }
-    // With states in units that suit each other, small eigenvalues keep their digits.
-    let mut a = linear.a.clone();
-    let scale = balance_parlett_reinsch(&mut a);
-    let unscaled = |v: &[Complex<f64>]| -> Vec<Complex<f64>> { (0..half).map(|i| v[i] * scale[i]).collect() };
     let names = &linear.states;
-
-    let rest = Nullspace::of(&a);
-    let mut modes: Vec<NaturalMode> = rest
+    let still = Nullspace::of(&linear.a);
+    let mut modes: Vec<NaturalMode> = still
         .basis
         .iter()
         .map(|v| {
-            let v: Vec<Complex<f64>> = v.iter().map(|x| Complex::new(*x, 0.0)).collect();
-            mode(ModeKind::Rigid, Complex::new(0.0, 0.0), unscaled(&v), names)
+            let v: Vec<Complex<f64>> = v[..half].iter().map(|x| Complex::new(*x, 0.0)).collect();
+            mode(ModeKind::Rigid, Complex::new(0.0, 0.0), v, names)
         })
         .collect();
-    let mut eigenvalues = eigenvalues(&a)?;
+    let mut eigenvalues = eigenvalues(&still.rest)?;
     eigenvalues.sort_by(|x, y| x.norm().total_cmp(&y.norm()));
-    for (i, &lambda) in eigenvalues.iter().enumerate().skip(rest.multiplicity) {
+    let mut a = linear.a.clone();
+    let scale = balance_parlett_reinsch(&mut a);
+    for (i, &lambda) in eigenvalues.iter().enumerate() {
         if lambda.im < 0.0 {
             continue;
         }
@@ -80,14 +77,18 @@ pub fn natural_modes(linear: &Linearization) -> Result<Vec<NaturalMode>, Error> 
             _ => ModeKind::Growth,
         };
         let v = eigenvector(&a, lambda, i);
-        modes.push(mode(kind, lambda, unscaled(v.as_slice()), names));
+        let v = (0..half).map(|i| v[i] * scale[i]).collect();
+        modes.push(mode(kind, lambda, v, names));
     }
     Ok(modes)
 }
 
-/// All eigenvalues of a balanced matrix.
+/// All eigenvalues of a matrix.
 pub(super) fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, Error> {
-    let schur = Schur::try_new(a.clone(), f64::EPSILON, 100 * a.nrows().max(100));
+    // With states in units that suit each other, small eigenvalues keep their digits.
+    let mut balanced = a.clone();
+    balance_parlett_reinsch(&mut balanced);
+    let schur = Schur::try_new(balanced, f64::EPSILON, 100 * a.nrows().max(100));
     let found =
         schur.map(|s| s.complex_eigenvalues()).filter(|l| l.iter().all(|x| x.re.is_finite() && x.im.is_finite()));
     found.map(|l| l.iter().copied().collect()).ok_or_else(|| {
@@ -114,7 +115,9 @@ fn eigenvector(a: &DMatrix<f64>, lambda: Complex<f64>, number: usize) -> DVector
 const ITERATIONS: usize = 4;
 
 fn mode(kind: ModeKind, lambda: Complex<f64>, shape: Vec<Complex<f64>>, names: &[String]) -> NaturalMode {
-    let most = (0..shape.len()).max_by(|a, b| shape[*a].norm().total_cmp(&shape[*b].norm())).unwrap_or(0);
+    let largest = shape.iter().fold(0.0, |most: f64, x| most.max(x.norm()));
+    // Of entries that are equal but for rounding the first, so that a link goes before its motor.
+    let most = shape.iter().position(|x| x.norm() >= largest * (1.0 - 1e-6)).unwrap_or(0);
     let by = shape[most];
     let tidy = |x: f64| if x.abs() < TINY { 0.0 } else { x };
     let whole = |z: Complex<f64>| if by.norm() > 0.0 { [tidy((z / by).re), tidy((z / by).im)] } else { [0.0; 2] };

@@ -1,38 +1,42 @@
-//! States that a linear model leaves where they are, and how many of its eigenvalues they account for.
+//! States that a linear model leaves where they are, and what is left of the model without them.
 
 use nalgebra::DMatrix;
 
 /// Singular values below this share of the largest count as zero: above the rounding of the derivatives, below the stiffness of
 /// gravity against that of gears.
-const RANK: f64 = 1e-11;
-/// Cosines below this between states at rest and the constraints that keep them there.
-const DEFECT: f64 = 1e-8;
+const RANK: f64 = 1e-13;
 
-/// The null space of a matrix.
+/// A square matrix taken apart: its null space, and a smaller matrix with all its other eigenvalues.
 pub(super) struct Nullspace {
     /// A basis, in the form with as many zeros as elimination can make; each vector has a largest entry of 1.
     pub(super) basis: Vec<Vec<f64>>,
-    /// How often zero is an eigenvalue.
-    pub(super) multiplicity: usize,
+    /// A matrix with the eigenvalues that are not zero.
+    pub(super) rest: DMatrix<f64>,
 }
 
 impl Nullspace {
-    /// Of a square matrix, already balanced.
+    /// Of a square matrix. To balance it first would raise rounding to the size of small stiffnesses.
+    ///
+    /// Without friction a robot at rest moves on once it is pushed: zero is then an eigenvalue more often than there are states at
+    /// rest, and rounding would scatter it. So null spaces are split off one after the other (Kublanovskaya's staircase, Golub and
+    /// Wilkinson, SIAM Review 18, 1976): with `V` orthogonal to the null space, `Vᵀ A V` has the other eigenvalues.
     pub(super) fn of(a: &DMatrix<f64>) -> Self {
-        let n = a.nrows();
-        let svd = a.clone().svd(true, true);
-        let (Some(u), Some(v_t)) = (&svd.u, &svd.v_t) else { return Self { basis: Vec::new(), multiplicity: 0 } };
-        let small = RANK * svd.singular_values.max();
-        let zeros: Vec<usize> = (0..n).filter(|i| svd.singular_values[*i] <= small).collect();
-        let r = zeros.len();
-        if r == 0 {
-            return Self { basis: Vec::new(), multiplicity: 0 };
+        let mut rest = a.clone();
+        let mut basis = None;
+        let size = a.norm();
+        while rest.nrows() > 0 {
+            let svd = rest.clone().svd(false, true);
+            let Some(v_t) = &svd.v_t else { break };
+            let (still, moving): (Vec<usize>, Vec<usize>) =
+                (0..rest.nrows()).partition(|i| svd.singular_values[*i] <= RANK * size);
+            basis.get_or_insert_with(|| reduced(v_t.select_rows(&still)));
+            if still.is_empty() {
+                break;
+            }
+            let others = v_t.select_rows(&moving);
+            rest = &others * rest * others.transpose();
         }
-        // A Jordan block of two has a left null vector across from the null space: a motion without friction.
-        let across = DMatrix::from_fn(r, r, |i, j| u.column(zeros[i]).dot(&v_t.row(zeros[j]).transpose()));
-        let coupled = across.singular_values().iter().filter(|s| **s > DEFECT).count();
-        let rows = DMatrix::from_fn(r, n, |i, j| v_t[(zeros[i], j)]);
-        Self { basis: reduced(rows), multiplicity: r + (r - coupled) }
+        Self { basis: basis.unwrap_or_default(), rest }
     }
 }
 

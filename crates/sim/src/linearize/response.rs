@@ -47,6 +47,8 @@ pub struct Response {
 }
 
 const POINTS: usize = 500;
+/// Damping ratios below this are rounding.
+const UNDAMPED: f64 = 1e-9;
 /// Frequencies beyond this have no meaning for a robot [Hz].
 const HIGHEST: f64 = 1e9;
 
@@ -55,7 +57,7 @@ const HIGHEST: f64 = 1e9;
 /// # Errors
 /// An unknown joint, or a range of frequencies that is none.
 pub fn frequency_response(
-    of: &mut Linearizer,
+    of: &Linearizer,
     point: &OperatingPoint,
     joint: &str,
     sweep: Sweep,
@@ -86,7 +88,13 @@ pub fn frequency_response(
     grid.retain(|f| (from..=to).contains(f));
     grid.sort_by(f64::total_cmp);
     grid.dedup();
-    let (resonances, antiresonances) = extremes(&grid, |f| system.at(f).map_or(f64::INFINITY, |[m, _]| m.norm()));
+    let (mut resonances, antiresonances) = extremes(&grid, |f| system.at(f).map_or(f64::INFINITY, |[m, _]| m.norm()));
+    let undamped = |f: f64| {
+        let near =
+            |m: &NaturalMode| (m.frequency - f).abs() < 1e-6 * f && m.damping_ratio.is_some_and(|z| z.abs() < UNDAMPED);
+        modes.iter().any(near)
+    };
+    resonances.iter_mut().filter(|e| undamped(e.frequency)).for_each(|e| e.magnitude = None);
     Ok(Response { joint: joint.to_owned(), frequency, motor, link, resonances, antiresonances, modes })
 }
 
@@ -139,13 +147,16 @@ pub fn logarithmic(from: f64, to: f64, points: usize) -> impl Iterator<Item = f6
     })
 }
 
-/// Magnitudes and phases [rad] of a response over rising frequencies, the phases without jumps of a turn.
+/// Magnitudes and phases [rad] of a response over rising frequencies, the phases without jumps of a turn, the first one between
+/// −270° and 90°. Where an undamped robot jumps by half a turn, which way is anybody's choice: towards −90°.
 pub fn bode(response: &[Complex<f64>]) -> [Vec<f64>; 2] {
-    let mut before = 0.0;
+    const MIDDLE: f64 = -0.25 * TAU;
+    let nearest = |phase: f64, to: f64| phase - TAU * ((phase - to) / TAU).round();
+    let mut before = MIDDLE;
     let phases = response.iter().map(|z| {
-        // Negative numbers lag by half a turn, whatever the sign of the zero beside them.
-        let phase = if z.im.abs() <= 1e-12 * z.re.abs() && z.re < 0.0 { -0.5 * TAU } else { z.arg() };
-        before = phase - TAU * ((phase - before) / TAU).round();
+        let next = nearest(z.arg(), before);
+        let half_a_turn = ((next - before).abs() - 0.5 * TAU).abs() < 1e-6;
+        before = if half_a_turn { before + 0.5 * TAU * (MIDDLE - before).signum() } else { next };
         before
     });
     [response.iter().map(|z| z.norm()).collect(), phases.collect()]
