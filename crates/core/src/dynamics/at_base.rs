@@ -82,9 +82,9 @@ impl<T: Scalar> Default for DerivativeScratch<T> {
 }
 
 /// Poses, axes and velocities, base to tips, and what each body alone asks for: inertia, `2B`, and its force at the accelerations
-/// `qdd`. The inertias are those that `inertia` gives.
+/// `qdd`. The inertias are those that `inertia` gives. `ψ̈` is left out where `TURNING` is false.
 #[inline(always)]
-pub(super) fn outward<T: Scalar, F: Over<T>>(
+pub(super) fn outward<T: Scalar, F: Over<T>, const TURNING: bool>(
     model: &Model<T::Param>,
     q: &[T],
     qd: impl Fn(usize) -> F,
@@ -129,7 +129,9 @@ pub(super) fn outward<T: Scalar, F: Over<T>>(
             let s = &mut scratch[i];
             s.axis = axis.map(F::store);
             s.axis_rate = axis_rate.map(F::store);
-            s.axis_acceleration = (a_p.cross(axis) + v_p.cross(axis_rate)).map(F::store);
+            if TURNING {
+                s.axis_acceleration = (a_p.cross(axis) + v_p.cross(axis_rate)).map(F::store);
+            }
         }
         // f = I a + v ×* I v
         let inertia = inertia(body).seen_from_parent(pose);
@@ -343,6 +345,14 @@ pub(super) fn for_each_carrying<T: Scalar, F: Over<T>>(
         let qd = n.dot(rate + rate) + across.dot(axis);
         put(OnCarrier { column, speed: n.dot(axis), across: across.dot(axis), q, qd, c: half * qd });
         at = on.parent();
+    }
+}
+
+/// Sets an entry.
+#[inline(always)]
+pub(super) fn set<T: Scalar, F: Over<T>>(entries: &mut [T], at: usize, x: F) {
+    if let Some(entry) = entries.get_mut(at) {
+        *entry = x.store();
     }
 }
 

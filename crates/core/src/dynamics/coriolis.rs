@@ -122,7 +122,14 @@ fn composites<T: Scalar>(
     scratch: &mut [DerivativeScratch<T>],
     mut put: impl FnMut(usize, usize, T),
 ) -> Result<(), SizeError> {
-    outward(model, state.q, |k| state.qd[k], |_| T::zero(), |body| body.inertia_with_rotors::<T>(), scratch)?;
+    outward::<T, T, false>(
+        model,
+        state.q,
+        |k| state.qd[k],
+        |_| T::zero(),
+        |body| body.inertia_with_rotors::<T>(),
+        scratch,
+    )?;
     for body in model.bodies {
         let Some(drive) = &body.drive else { continue };
         let k = body.v_index();
@@ -180,7 +187,14 @@ pub fn bias<T: Scalar>(
     check_scratch(model, scratch)?;
     SizeError::check("link", link.len(), model.nv)?;
     SizeError::check("motor", motor.len(), model.nv)?;
-    outward(model, state.q, |k| state.qd[k], |_| T::zero(), |body| body.inertia_with_rotors::<T>(), scratch)?;
+    outward::<T, T, false>(
+        model,
+        state.q,
+        |k| state.qd[k],
+        |_| T::zero(),
+        |body| body.inertia_with_rotors::<T>(),
+        scratch,
+    )?;
     link.fill(T::zero());
     motor.fill(T::zero());
     for body in model.bodies {
@@ -213,7 +227,7 @@ pub fn gravity_torques<T: Scalar>(
     SizeError::check("q", q.len(), model.nq)?;
     check_scratch(model, scratch)?;
     SizeError::check("g", g.len(), model.nv)?;
-    outward(model, q, |_| T::zero(), |_| T::zero(), |body| body.inertia_with_rotors::<T>(), scratch)?;
+    outward::<T, T, false>(model, q, |_| T::zero(), |_| T::zero(), |body| body.inertia_with_rotors::<T>(), scratch)?;
     g.fill(T::zero());
     inward(model, scratch, g);
     Ok(())

@@ -9,15 +9,15 @@
 //! ```
 //!
 //! where `∂(M q̈ + b)` are the sensitivities of [`super::at_base`] at the `q̈` found. With rigid gears the rotors' inertia is in `M` and
-//! their columns belong to `q̇` and `q̈`. `M = Lᵀ D L` is factorised along the branches, and solved for all columns at once.
+//! their columns belong to `q̇` and `q̈`. What acts on a joint depends on its own coordinates alone.
 //!
-//! Cost O(n·depth) for the sensitivities and for each column of the solution. No allocation, no branch on values.
+//! Cost O(n·depth) for the right-hand sides, then two dense products. No allocation, no branch on values.
 
 use super::at_base::{
     DerivativeScratch, Entries, OnCarrier, add, carrier, for_each_carrying, for_each_inertia, for_each_pair, hand_on,
-    load_carrier, outward, spin, subtract_wrenches, unit,
+    load_carrier, outward, set, spin, subtract_wrenches, unit,
 };
-use super::branches::{factorise, solve, subtract, supporting};
+use super::dense::{invert, stride, transposed_times};
 use super::drive_torque::{JointState, drives, sensitivity};
 use super::{External, Forward, State, check_external, check_scratch, check_state};
 use crate::Scalar;
@@ -38,7 +38,8 @@ pub struct ForwardDerivatives<'a, T> {
 
 /// Entries of the matrix that [`forward_derivatives`] works in.
 pub fn derivative_matrix_len<P: Scalar>(model: &Model<P>) -> usize {
-    (2 * model.nv + 10) * model.nv
+    let nv = model.nv;
+    (2 * stride(nv) + 6 * nv + 2) * nv
 }
 
 /// The accelerations of [`super::forward_dynamics`] and how they change with state and motor torques, in all four models. Loads from
@@ -88,11 +89,14 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
         let (Forward { qdd, thetadd, tau_j }, ForwardDerivatives { qdd: d_qdd, thetadd: d_thetadd }) = (value, out);
         let (bodies, nv) = (model.bodies, model.nv);
         let width = 5 * nv;
-        let [q, qd, theta, thetad, tau_at] = [0, 1, 2, 3, 4].map(|block| block * nv);
-        let (m, rest) = matrix.split_at_mut(nv * nv);
-        let (r, local) = rest.split_at_mut(nv * nv);
-        let (on_link, on_rotor) = local.split_at_mut(5 * nv);
-        for all in [&mut *m, &mut *r, &mut *on_link, &mut *on_rotor, &mut *d_qdd, &mut *d_thetadd] {
+        let [q, qd, _, thetad, tau_at] = [0, 1, 2, 3, 4].map(|block| block * nv);
+        // M; M⁻¹; −R; M ∂q̈; what is left to accelerate the joints; pivots
+        let (m, rest) = matrix.split_at_mut(stride(nv) * nv);
+        let (inverse, rest) = rest.split_at_mut(stride(nv) * nv);
+        let (r, rest) = rest.split_at_mut(nv * nv);
+        let (rhs, rest) = rest.split_at_mut(width * nv);
+        let (left, pivots) = rest.split_at_mut(nv);
+        for all in [&mut *m, &mut *r, &mut *rhs, &mut *d_thetadd] {
             all.fill(T::zero());
         }
         let load = |k: usize| ext.tau.get(k).map_or(F::zero(), |tau| F::load(*tau));
@@ -104,7 +108,7 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
         };
 
         // Pass 1, base to tips, at q̈ = 0: motion and forces, then torques at the joints and couples of the rotors.
-        outward(
+        outward::<T, F, false>(
             model,
             state.q,
             |k| F::load(state.qd[k]),
@@ -117,14 +121,15 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             let k = body.v_index();
             if body.joint == JointKind::Floating {
                 for k in k..k + 6 {
-                    qdd[k] = (F::load(tau[k]) + load(k)).store();
+                    left[k] = (F::load(tau[k]) + load(k)).store();
                     tau_j[k] = tau[k];
+                    add(rhs, k * width + tau_at + k, F::one());
                 }
                 continue;
             }
             let at = joint(k, body.q_index());
             let known = drives(body, at, F::load(tau[k]), load(k), model.knots);
-            (qdd[k], thetadd[k], tau_j[k]) = (known.on_link.store(), known.on_rotor.store(), known.tau_j.store());
+            (left[k], thetadd[k], tau_j[k]) = (known.on_link.store(), known.on_rotor.store(), known.tau_j.store());
             let Some(Drive { rotor, elastic }) = &body.drive else { continue };
             let Some((on, omega, n)) = carrier::<T, F>(rotor, scratch) else { continue };
             // Couple h ω × n + (r/N) n; by ω it changes with −h n×, and, J n nᵀ not being in the carrier's inertia, J (ω × n) nᵀ
@@ -147,51 +152,44 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
                 for c in 0..6 {
                     let column = inertia.momentum(unit::<F>(c)).to_array();
                     for (r, entry) in column.into_iter().enumerate() {
-                        m[(k + r) * nv + k + c] = entry.store();
+                        set(m, (k + r) * stride(nv) + k + c, entry);
                     }
-                    qdd[k + c] = (F::load(qdd[k + c]) - force.to_array()[c]).store();
+                    left[k + c] = (F::load(left[k + c]) - force.to_array()[c]).store();
                 }
                 continue;
             }
             let axis = s.axis.map(F::load);
             s.column = inertia.momentum(axis).map(F::store);
-            let mut left = F::load(qdd[k]) - axis.dot(force);
+            let mut accelerating = F::load(left[k]) - axis.dot(force);
             for_each_inertia(
                 model,
                 scratch,
                 i,
                 #[inline(always)]
-                |column, entry: F| add(m, k * nv + column, entry),
+                |column, entry: F| set(m, k * stride(nv) + column, entry),
             );
-            if let Some(Drive { rotor, elastic }) = &body.drive
+            if let Some(rotor) = body.rigid_rotor()
                 && let Some(at) = carrier::<T, F>(rotor, scratch)
             {
                 let spin = spin::<T, F>(rotor);
-                let by_torque = F::from_param(rotor.inv_gear_ratio);
-                if elastic.is_none() {
-                    left -= spin * at.2.dot(scratch[at.0].a.ang.map(F::load));
-                }
+                accelerating -= spin * at.2.dot(scratch[at.0].a.ang.map(F::load));
                 for_each_carrying(
                     model,
                     scratch,
                     at,
                     #[inline(always)]
-                    |on: OnCarrier<F>| {
-                        if elastic.is_some() {
-                            r[on.column * nv + k] = (by_torque * on.speed).store();
-                            add(d_qdd, on.column * width + thetad + k, -(spin * on.across));
-                        } else {
-                            add(m, k * nv + on.column, spin * on.speed);
-                        }
-                    },
+                    |on: OnCarrier<F>| add(m, k * stride(nv) + on.column, spin * on.speed),
                 );
             }
-            add(m, k * nv + k, body.rigid_reflected_inertia::<F>());
-            qdd[k] = left.store();
+            add(m, k * stride(nv) + k, body.rigid_reflected_inertia::<F>());
+            left[k] = accelerating.store();
             hand_on::<T, F>(body, i, scratch);
         }
-        factorise::<T, F>(model, m);
-        solve::<T, F>(model, m, qdd, 1);
+        invert::<T, F>(nv, m, pivots, inverse);
+        for (qdd, row) in qdd.iter_mut().zip(inverse.chunks_exact(stride(nv).max(1))) {
+            let products = row.iter().zip(&*left);
+            *qdd = products.fold(F::zero(), |sum, (m, left)| F::load(*m).mul_add(F::load(*left), sum)).store();
+        }
 
         // Pass 3, base to tips: accelerations, ψ̈, and what they add to the forces: Iᶜ Δa, and Iᶜ S q̈ of the joints beyond.
         for i in 0..bodies.len() {
@@ -226,8 +224,8 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
                 i,
                 #[inline(always)]
                 |at: Entries<F>| {
-                    add(d_qdd, at.row * width + q + at.column, -at.q);
-                    add(d_qdd, at.row * width + qd + at.column, -at.qd);
+                    set(rhs, at.row * width + q + at.column, -at.q);
+                    set(rhs, at.row * width + qd + at.column, -at.qd);
                 },
             );
             if body.joint == JointKind::Floating {
@@ -238,7 +236,17 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
             if let Some(p) = body.parent().and_then(|p| scratch.get_mut(p)) {
                 p.beyond = (p.beyond.map(F::load) + beyond).map(F::store);
             }
+            let by = sensitivity(body, joint(k, body.q_index()), model.knots);
+            for (block, on_link) in by.on_link.into_iter().enumerate() {
+                add(rhs, k * width + block * nv + k, on_link);
+            }
             let Some(Drive { rotor, elastic }) = &body.drive else { continue };
+            if elastic.is_some() {
+                for (block, on_rotor) in by.on_rotor.into_iter().enumerate() {
+                    let by_torque = F::from_param(rotor.inv_reflected_inertia);
+                    set(d_thetadd, k * width + block * nv + k, by_torque * on_rotor);
+                }
+            }
             let Some(at) = carrier::<T, F>(rotor, scratch) else { continue };
             let spin = spin::<T, F>(rotor);
             if elastic.is_some() {
@@ -249,8 +257,14 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
                     at,
                     #[inline(always)]
                     |on: OnCarrier<F>| {
-                        add(d_thetadd, k * width + q + on.column, -(by_speed * on.q));
-                        add(d_thetadd, k * width + qd + on.column, -(by_speed * on.qd));
+                        let turned = by_speed * on.speed;
+                        set(r, on.column * nv + k, -turned);
+                        for (block, on_rotor) in by.on_rotor.into_iter().enumerate() {
+                            add(rhs, on.column * width + block * nv + k, -(turned * on_rotor));
+                        }
+                        add(rhs, on.column * width + thetad + k, -(spin * on.across));
+                        set(d_thetadd, k * width + q + on.column, -(by_speed * on.q));
+                        set(d_thetadd, k * width + qd + on.column, -(by_speed * on.qd));
                     },
                 );
                 continue;
@@ -263,74 +277,34 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
                 at,
                 #[inline(always)]
                 |on: OnCarrier<F>| {
-                    add(d_qdd, on.column * width + qd + k, -(spin * on.across));
-                    add(d_qdd, k * width + q + on.column, -(spin * on.q));
-                    add(d_qdd, k * width + qd + on.column, -(spin * on.qd));
+                    add(rhs, on.column * width + qd + k, -(spin * on.across));
+                    add(rhs, k * width + q + on.column, -(spin * on.q));
+                    add(rhs, k * width + qd + on.column, -(spin * on.qd));
                 },
             );
         }
 
-        // Solve for −∂(M q̈ + b), in the columns of θ and τ for R and 1: M⁻¹ R = ∂q̈/∂(−r), M⁻¹ = ∂q̈/∂τ_J
+        transposed_times::<T, F, false>(nv, (inverse, stride(nv)), |_| nv, rhs, d_qdd, width);
+        // A rotor is carried by joints before its own: R is strictly triangular.
+        transposed_times::<T, F, true>(nv, (r, nv), |end| end - 1, d_qdd, d_thetadd, width);
+
+        // θ̈ = r/B − n·α/N;   rigid: that of the joint, and τ_J less what the rotor takes
         for body in bodies {
             let k = body.v_index();
-            if body.joint == JointKind::Floating {
-                for k in k..k + 6 {
-                    on_link[4 * nv + k] = T::one();
-                }
-                continue;
-            }
-            let by = sensitivity(body, joint(k, body.q_index()), model.knots);
-            for block in 0..5 {
-                on_link[block * nv + k] = by.on_link[block].store();
-                on_rotor[block * nv + k] = by.on_rotor[block].store();
-            }
-        }
-        for k in 0..nv {
-            let row = &mut d_qdd[k * width..][..width];
-            row[theta..theta + nv].copy_from_slice(&r[k * nv..][..nv]);
-            row[tau_at + k] = T::one();
-        }
-        solve::<T, F>(model, m, d_qdd, width);
-        // Then ∂q̈ = −M⁻¹ ∂(M q̈ + b) + M⁻¹ ∂(τ_J − friction) − M⁻¹ R ∂r, where what acts on a joint depends on its own coordinates alone.
-        for row in d_qdd.chunks_exact_mut(width.max(1)) {
-            for k in 0..nv {
-                let (by_rotor, by_link) = (F::load(row[theta + k]), F::load(row[tau_at + k]));
-                (row[theta + k], row[tau_at + k]) = (T::zero(), T::zero());
-                for block in [q, qd, theta, thetad, tau_at] {
-                    let entry = &mut row[block + k];
-                    let (link, rotor) = (F::load(on_link[block + k]), F::load(on_rotor[block + k]));
-                    *entry = (-by_rotor).mul_add(rotor, by_link.mul_add(link, F::load(*entry))).store();
-                }
-            }
-        }
-
-        // ∂θ̈ = … − Rᵀ ∂q̈;   θ̈ = r/B − n·α/N,   rigid: τ_J less what the rotor takes
-        for body in bodies {
-            let (k, rows) = (body.v_index(), body.v_index() * width..(body.v_index() + body.joint.nv()) * width);
             let Some(Drive { rotor, .. }) = body.drive.as_ref().filter(|drive| drive.elastic.is_some()) else {
+                let rows = k * width..(k + body.joint.nv()) * width;
                 d_thetadd[rows.clone()].copy_from_slice(&d_qdd[rows]);
-                for k in k..k + body.joint.nv() {
-                    thetadd[k] = qdd[k];
-                }
+                thetadd[k..k + body.joint.nv()].copy_from_slice(&qdd[k..k + body.joint.nv()]);
                 if let Some(rotor) = body.rigid_rotor() {
-                    let alpha = at_carrier::<T, F>(rotor, scratch);
-                    let taken =
-                        F::from_param(rotor.reflected_inertia).mul_add(F::load(qdd[k]), spin::<T, F>(rotor) * alpha);
+                    let own = F::from_param(rotor.reflected_inertia) * F::load(qdd[k]);
+                    let taken = spin::<T, F>(rotor).mul_add(at_carrier(rotor, scratch), own);
                     tau_j[k] = (F::load(tau_j[k]) - taken).store();
                 }
                 continue;
             };
-            let own = F::load(thetadd[k]) * F::from_param(rotor.inv_reflected_inertia);
-            thetadd[k] = (own - at_carrier::<T, F>(rotor, scratch) * F::from_param(rotor.inv_gear_ratio)).store();
-            for block in 0..5 {
-                let own = F::load(on_rotor[block * nv + k]) * F::from_param(rotor.inv_reflected_inertia);
-                add(d_thetadd, k * width + block * nv + k, own);
-            }
-            let mut at = last_coordinate(model, rotor.mount());
-            while let Some(p) = at {
-                subtract::<T, F>(&mut d_thetadd[rows.clone()], F::load(r[p * nv + k]), &d_qdd[p * width..][..width]);
-                at = supporting(model, p);
-            }
+            let (by_torque, by_speed) =
+                (F::from_param(rotor.inv_reflected_inertia), F::from_param(rotor.inv_gear_ratio));
+            thetadd[k] = (F::load(thetadd[k]) * by_torque - at_carrier::<T, F>(rotor, scratch) * by_speed).store();
         }
         Ok(())
     }
@@ -340,11 +314,4 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
 #[inline(always)]
 fn at_carrier<T: Scalar, F: Over<T>>(rotor: &Rotor<T::Param>, scratch: &[DerivativeScratch<T>]) -> F {
     carrier::<T, F>(rotor, scratch).map_or(F::zero(), |(m, _, n)| n.dot(scratch[m].a.ang.map(F::load)))
-}
-
-/// The last velocity coordinate of a body's joint.
-#[inline(always)]
-fn last_coordinate<P: Scalar>(model: &Model<P>, body: Option<usize>) -> Option<usize> {
-    let body = model.bodies.get(body?)?;
-    Some(body.v_index() + body.joint.nv() - 1)
 }

@@ -73,7 +73,7 @@ impl<T: Scalar> Kernel<T> for Sensitivities<'_, '_, T> {
         tau.fill(T::zero());
 
         // Pass 1, base to tips: motion and forces, then the rotors' couples on their carriers.
-        outward(
+        outward::<T, F, true>(
             model,
             state.q,
             |k| F::load(state.qd[k]),

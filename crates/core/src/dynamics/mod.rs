@@ -12,6 +12,7 @@ mod at_base;
 mod branches;
 mod coriolis;
 mod crba;
+mod dense;
 mod drive_torque;
 mod energy;
 mod euler;

@@ -167,7 +167,14 @@ fn joint_space<T: Scalar>(
 ) -> Result<(), SizeError> {
     let nv = model.nv;
     let no_gravity = model.with_gravity(Vec3::zero());
-    outward(&no_gravity, state.q, |k| state.qd[k], |_| T::zero(), |body| body.inertia.map(T::from_param), scratch)?;
+    outward::<T, T, false>(
+        &no_gravity,
+        state.q,
+        |k| state.qd[k],
+        |_| T::zero(),
+        |body| body.inertia.map(T::from_param),
+        scratch,
+    )?;
     let mut lift = -model.gravity.map(T::from_param);
     if model.floating {
         lift = RootMotion::of(state.q, &[]).rot * lift;

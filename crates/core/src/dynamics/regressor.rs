@@ -63,7 +63,14 @@ pub fn regressor<T: Scalar>(
         SizeError::check(name, matrix.len(), model.nv * width)?;
         matrix.fill(T::zero());
     }
-    outward(model, state.q, |k| state.qd[k], |k| accel.qdd[k], |body| body.inertia.map(T::from_param), scratch)?;
+    outward::<T, T, false>(
+        model,
+        state.q,
+        |k| state.qd[k],
+        |k| accel.qdd[k],
+        |body| body.inertia.map(T::from_param),
+        scratch,
+    )?;
 
     for (i, body) in model.bodies.iter().enumerate() {
         // The force of each inertial parameter, and what it asks of the joints that carry the body.
