@@ -2,12 +2,11 @@
 
 use crate::{arms, assert_close, pose, single_link};
 use gyroflex::dynamics::{External, Forward};
-use gyroflex_sim::ErrorKind;
-use gyroflex_sim::Fidelity;
-use gyroflex_sim::linearize::{KeptFriction, OperatingPoint, Output, ReferenceMotion};
+use gyroflex_sim::coordinates::Coordinates;
+use gyroflex_sim::linearize::{KeptFriction, OperatingPoint, ReferenceMotion};
 use gyroflex_sim::load::{Disk, LoadOptions, load};
 use gyroflex_sim::reference::references;
-use gyroflex_sim::{Dynamics, ScenarioFile};
+use gyroflex_sim::{Dynamics, ErrorKind, Fidelity, Robot, ScenarioFile};
 use std::path::Path;
 
 fn accelerations(dynamics: &mut Dynamics, point: &OperatingPoint) -> [Vec<f64>; 2] {
@@ -82,39 +81,38 @@ fn vectors_that_do_not_fit_are_refused_with_their_names() {
     }
 }
 
-/// A robot's scenario, and its reference's positions and accelerations at some times.
-fn on_reference(model: Fidelity) -> Vec<(OperatingPoint, [Vec<f64>; 2], Vec<f64>, Dynamics)> {
+/// The PUMA 560, and the scenario in which it tracks a reference.
+fn tracking() -> (Robot, ScenarioFile) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/puma560/track.yaml");
     let file = ScenarioFile::load(&Disk, &path).expect("it is a scenario");
     let robot = load(&file.robot_path(), &LoadOptions::default()).expect("it is a robot");
-    let joints = gyroflex_sim::coordinates::Coordinates::of(&robot);
-    let q0 = joints.spread(&file.scenario.initial.q, &file.keys, "initial.q").expect("it fits");
-    let reference = references(&file, &joints, &q0, &mut Vec::new()).expect("it fits");
-    let mut motion = ReferenceMotion::new(&robot, &file, Some(model), KeptFriction::All).expect("it fits");
-    let times = [0.4, 0.9, 1.5];
-    let points = times.map(|t| {
-        let point = motion.at(t).expect("it is within");
-        motion.linearizer().linearize(&point, &Output::defaults()).expect("it fits");
-        let now: Vec<_> = reference.iter().map(|r| r.at(t)).collect();
-        let mut dynamics = Dynamics::new(robot.model(model).expect("it is physical"));
-        let found = accelerations(&mut dynamics, &point);
-        (point, found, now.iter().map(|p| p.qdd).collect(), dynamics)
-    });
-    points.into()
+    (robot, file)
 }
 
 #[test]
-fn on_a_reference_a_rigid_robot_accelerates_as_the_reference_does() {
-    for (point, [qdd, _], want, _) in on_reference(Fidelity::Rigid) {
-        assert_close(&format!("at {:?} s", point.time), &qdd, &want, 1e-9);
+fn on_a_reference_a_robot_accelerates_as_the_reference_does() {
+    let (robot, file) = tracking();
+    let joints = Coordinates::of(&robot);
+    let q0 = joints.spread(&file.scenario.initial.q, &file.keys, "initial.q").expect("it fits");
+    let reference = references(&file, &joints, &q0, &mut Vec::new()).expect("it fits");
+    // With elastic joints but for the dampers, which the motors' positions leave out.
+    for (model, tolerance) in [(Fidelity::Rigid, 1e-9), (Fidelity::RigidReflected, 1e-9), (Fidelity::Complete, 0.05)] {
+        let mut motion = ReferenceMotion::new(&robot, &file, Some(model), KeptFriction::All).expect("it fits");
+        let mut dynamics = Dynamics::new(robot.model(model).expect("it is physical"));
+        for t in [0.4, 0.9, 1.5] {
+            let point = motion.at(t).expect("it is within");
+            let [qdd, _] = accelerations(&mut dynamics, &point);
+            let now: Vec<_> = reference.iter().map(|r| r.at(t)).collect();
+            assert_close("q", &point.state.q, now.iter().map(|p| &p.q), 1e-15);
+            assert_close("qd", &point.state.qd, now.iter().map(|p| &p.qd), 1e-15);
+            assert_close(&format!("{model:?} at {t} s"), &qdd, now.iter().map(|p| &p.qdd), tolerance);
+        }
     }
 }
 
 #[test]
 fn a_time_outside_of_the_scenario_is_refused() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/puma560/track.yaml");
-    let file = ScenarioFile::load(&Disk, &path).expect("it is a scenario");
-    let robot = load(&file.robot_path(), &LoadOptions::default()).expect("it is a robot");
+    let (robot, file) = tracking();
     let mut motion = ReferenceMotion::new(&robot, &file, None, KeptFriction::All).expect("it fits");
     for t in [-0.1, 1e9, f64::NAN] {
         let error = motion.at(t).expect_err("it is outside");
