@@ -47,6 +47,7 @@ pub struct Response {
 }
 
 const POINTS: usize = 500;
+const MOST_POINTS: usize = 1_000_000;
 /// Damping ratios below this are rounding.
 const UNDAMPED: f64 = 1e-9;
 /// Frequencies beyond this have no meaning for a robot [Hz].
@@ -174,8 +175,9 @@ fn frequencies(sweep: Sweep, modes: &[NaturalMode]) -> Result<Vec<f64>, Error> {
         let problem = format!("from {from} Hz to {to} Hz is no range of frequencies");
         return Err(fault(&problem, "give two frequencies above zero, the smaller one first"));
     }
-    if points < 2 {
-        return Err(fault(&format!("{points} points are asked for"), "give two points or more"));
+    if !(2..=MOST_POINTS).contains(&points) {
+        let remedy = format!("give from two to {MOST_POINTS}");
+        return Err(fault(&format!("{points} points are asked for"), &remedy));
     }
     Ok(logarithmic(from, to, points).collect())
 }
