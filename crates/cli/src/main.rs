@@ -4,6 +4,7 @@ mod args;
 mod builtin;
 mod commands;
 mod failure;
+mod json;
 mod plot;
 mod progress;
 mod report;

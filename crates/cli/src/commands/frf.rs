@@ -3,10 +3,11 @@
 use super::{output, pose};
 use crate::args::Frf;
 use crate::failure::{Failure, print, say};
+use crate::json;
 use crate::plot;
 use gyroflex_sim::error::Error;
 use gyroflex_sim::linearize::{Extreme, Response, Sweep, bode, frequency_response};
-use serde_json::json;
+use serde_json::json as value;
 use std::fmt::Write;
 
 pub fn run(args: &Frf, quiet: bool) -> Result<(), Failure> {
@@ -34,14 +35,14 @@ pub fn run(args: &Frf, quiet: bool) -> Result<(), Failure> {
     }
     if args.json {
         let ([motor, motor_phase], [link, link_phase]) = (bode(&response.motor), bode(&response.link));
-        let all = json!({
+        let all = value!({
             "robot": robot.name, "model": robot.fidelity.name(), "joint": response.joint, "unit": unit,
             "q": point.state.q, "resonances": response.resonances, "antiresonances": response.antiresonances,
             "frequency": response.frequency,
             "motor": {"magnitude": motor, "phase": motor_phase},
             "link": {"magnitude": link, "phase": link_phase},
         });
-        return print(&serde_json::to_string_pretty(&all).map_err(Error::from)?);
+        return print(&json::text(&all));
     }
     print(&text(&title, unit, &response))
 }

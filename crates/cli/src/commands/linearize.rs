@@ -3,15 +3,18 @@
 use super::{load, output, pose};
 use crate::args::Linearize;
 use crate::failure::{Failure, print, say, warn};
+use crate::json;
 use gyroflex_sim::ScenarioFile;
 use gyroflex_sim::error::Error;
 use gyroflex_sim::linearize::{
-    Linearization, Matrices, Output, ReferenceMotion, series_json, write_csv, write_mat, zero_order_hold_of,
+    Linearization, Matrices, Output, ReferenceMotion, write_csv, write_mat, zero_order_hold_of,
 };
 use gyroflex_sim::load::Disk;
 
 pub fn run(args: &Linearize, quiet: bool) -> Result<(), Failure> {
-    let outputs = args.output.iter().map(|o| Output::parse(o.trim())).collect::<Result<Vec<_>, Error>>()?;
+    let outputs = args.output.iter().map(|o| Output::parse(o.trim()));
+    let outputs =
+        outputs.collect::<Result<Vec<_>, Error>>().map_err(|e| Error { element: "--output".to_owned(), ..e })?;
     let mut series = models(args, &outputs, quiet)?;
     if let Some(step) = args.zoh {
         series = series.iter().map(|l| zero_order_hold_of(l, step)).collect::<Result<_, _>>()?;
@@ -32,10 +35,12 @@ pub fn run(args: &Linearize, quiet: bool) -> Result<(), Failure> {
     if !(args.json || written.is_empty()) {
         return Ok(());
     }
-    match (&args.scenario, series.first()) {
-        (None, Some(one)) => print(&serde_json::to_string_pretty(&Matrices::from(one)).map_err(Error::from)?),
-        _ => print(&series_json(&series)?),
-    }
+    let mut models: Vec<Matrices> = series.iter().map(Matrices::from).collect();
+    let value = match (&args.scenario, models.pop()) {
+        (None, Some(one)) => serde_json::to_value(one),
+        (_, last) => serde_json::to_value(models.into_iter().chain(last).collect::<Vec<_>>()),
+    };
+    print(&json::text(&value.map_err(Error::from)?))
 }
 
 /// One model at a pose, or one an instant.
@@ -46,7 +51,7 @@ fn models(args: &Linearize, outputs: &[Output], quiet: bool) -> Result<Vec<Linea
             Some(tau) => {
                 let tau = pose::torques(&linearizer, tau)?;
                 let start = pose::positions(&linearizer, &args.pose)?;
-                linearizer.equilibrium_for(&tau, &start)?
+                linearizer.equilibrium_for(&tau, &start).map_err(|e| Error { element: "--tau".to_owned(), ..e })?
             }
             None => pose::equilibrium(&mut linearizer, &args.pose, quiet)?,
         };

@@ -3,10 +3,10 @@
 use super::{output, pose};
 use crate::args::Modes;
 use crate::failure::{Failure, print, say};
+use crate::json;
 use crate::plot;
-use gyroflex_sim::error::Error;
 use gyroflex_sim::linearize::{ModeKind, NaturalMode, Output, natural_modes};
-use serde_json::json;
+use serde_json::json as value;
 use std::fmt::Write;
 
 pub fn run(args: &Modes, quiet: bool) -> Result<(), Failure> {
@@ -24,11 +24,11 @@ pub fn run(args: &Modes, quiet: bool) -> Result<(), Failure> {
         }
     }
     if args.json {
-        let all = json!({
+        let all = value!({
             "robot": robot.name, "model": robot.fidelity.name(), "q": point.state.q, "theta": point.state.theta,
             "tau": point.tau, "positions": positions, "modes": modes,
         });
-        return print(&serde_json::to_string_pretty(&all).map_err(Error::from)?);
+        return print(&json::text(&all));
     }
     let mut out = format!("{}, {} model\n", robot.name, robot.fidelity.name());
     if modes.is_empty() {

@@ -29,7 +29,7 @@ pub use partials::{Derivatives, Partials, partials};
 pub use point::OperatingPoint;
 pub use reference::ReferenceMotion;
 pub use response::{Extreme, Response, Sweep, bode, frequency_response, logarithmic};
-pub use tables::{Matrices, series_json, write_csv, write_mat};
+pub use tables::{Matrices, write_csv, write_mat};
 
 use crate::dynamics::Dynamics;
 use crate::error::{Error, ErrorKind};

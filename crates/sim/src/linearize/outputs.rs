@@ -62,7 +62,7 @@ impl Output {
                 format!("`{text}` is no output"),
                 format!(
                     "the nearest known one is `{}`; known: {}",
-                    nearest(&name, known()).unwrap_or_default(),
+                    nearest(&name, Self::NAMES.iter().map(|(name, _)| *name)).unwrap_or_default(),
                     known().collect::<Vec<_>>().join(", ")
                 ),
             )),

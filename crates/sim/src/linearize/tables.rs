@@ -1,4 +1,4 @@
-//! Linear models as JSON, CSV and MAT files.
+//! Linear models as rows, CSV and MAT files.
 
 use super::mat::{self, Value};
 use super::{Linearization, OperatingPoint};
@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// One linear model as it is written to JSON; matrices by rows.
+/// A linear model as other programs take it, by JSON for one; matrices by rows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Matrices {
     /// The instant, on a motion [s].
@@ -68,14 +68,6 @@ impl From<&Linearization> for Matrices {
             d: rows(&linear.d),
         }
     }
-}
-
-/// JSON of a series along a motion: a list.
-///
-/// # Errors
-/// Numbers that JSON has not.
-pub fn series_json(series: &[Linearization]) -> Result<String, Error> {
-    Ok(serde_json::to_string_pretty(&series.iter().map(Matrices::from).collect::<Vec<_>>())?)
 }
 
 /// Writes `A.csv`, `B.csv`, `C.csv` and `D.csv` into a folder, which is made if it is not there: names of the columns in the first
