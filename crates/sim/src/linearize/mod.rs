@@ -7,6 +7,7 @@
 //!     ẋ = A x + B u,    y = C x + D u.
 
 mod discrete;
+mod extremes;
 mod friction;
 mod layout;
 pub mod mat;
@@ -21,6 +22,7 @@ mod tables;
 mod torque;
 
 pub use discrete::{zero_order_hold, zero_order_hold_of};
+pub use extremes::Extreme;
 pub use friction::KeptFriction;
 pub use layout::Layout;
 pub use natural::{ModeKind, NaturalMode, natural_modes};
@@ -28,7 +30,7 @@ pub use outputs::Output;
 pub use partials::{Derivatives, Partials, partials};
 pub use point::OperatingPoint;
 pub use reference::ReferenceMotion;
-pub use response::{Extreme, Response, Sweep, bode, frequency_response, logarithmic};
+pub use response::{Response, Sweep, bode, frequency_response, logarithmic};
 pub use tables::{Matrices, write_csv, write_mat};
 
 use crate::dynamics::Dynamics;
