@@ -32,7 +32,7 @@ pub fn run(args: &Modes, quiet: bool) -> Result<(), Failure> {
     }
     let mut out = format!("{}, {} model\n", robot.name, robot.fidelity.name());
     if modes.is_empty() {
-        out.push_str("it has no joints, and no modes");
+        return print(&(out + "it has no joints, and no modes"));
     }
     let widest = modes.iter().map(|m| m.moves_most.chars().count()).max().unwrap_or(0).max("moves most".len());
     let line = |cells: [&str; 4], shape: &str| {

@@ -85,6 +85,9 @@ pub fn natural_modes(linear: &Linearization) -> Result<Vec<NaturalMode>, Error> 
 
 /// All eigenvalues of a matrix.
 pub(super) fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, Error> {
+    if a.is_empty() {
+        return Ok(Vec::new());
+    }
     // With states in units that suit each other, small eigenvalues keep their digits.
     let mut balanced = a.clone();
     balance_parlett_reinsch(&mut balanced);

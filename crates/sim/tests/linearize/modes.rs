@@ -137,6 +137,24 @@ fn undamped_modes_are_those_of_the_generalised_symmetric_problem() {
 }
 
 #[test]
+fn a_robot_that_nothing_brings_back_has_rigid_modes_and_those_that_friction_brakes() {
+    let free = modes(&mut linearizer(Fidelity::Rigid, KeptFriction::None, false), &[0.3]);
+    assert_eq!((of_kind(&free, ModeKind::Rigid).len(), free.len()), (1, 1));
+    let braked = modes(&mut linearizer(Fidelity::Rigid, KeptFriction::All, false), &[0.3]);
+    assert_eq!((of_kind(&braked, ModeKind::Rigid).len(), braked.len()), (1, 2));
+    assert_close("decay", &of_kind(&braked, ModeKind::Decay)[0].eigenvalue, &[-FRICTION / (LINK + ROTOR), 0.0], 1e-12);
+
+    // A floating one can be put anywhere and turned at will; held against its weight it falls sideways once it is tilted.
+    for (gravity, rigid) in [(Vec3::zero(), 9), (Vec3::new(0.0, 0.0, -9.81), 4)] {
+        let robot = Robot { gravity, ..undamped(true) };
+        let mut linearizer = Linearizer::new(&robot, Fidelity::Rigid, KeptFriction::All).expect("it is physical");
+        let q = pose(&linearizer);
+        let found = modes(&mut linearizer, &q);
+        assert_eq!(of_kind(&found, ModeKind::Rigid).len(), rigid, "{found:?}");
+    }
+}
+
+#[test]
 fn modes_of_a_sampled_model_are_refused() {
     let mut link = linearizer(Fidelity::Complete, KeptFriction::All, true);
     let point = link.equilibrium_at(&[0.0]).expect("it fits");
