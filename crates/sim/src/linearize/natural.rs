@@ -85,26 +85,32 @@ pub fn natural_modes(linear: &Linearization) -> Result<Vec<NaturalMode>, Error> 
 
 /// All eigenvalues of a matrix.
 pub(super) fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, Error> {
-    if a.is_empty() {
+    let n = a.nrows();
+    if n == 0 {
         return Ok(Vec::new());
     }
     // With states in units that suit each other, small eigenvalues keep their digits.
     let mut balanced = a.clone();
     balance_parlett_reinsch(&mut balanced);
-    let schur = Schur::try_new(balanced, f64::EPSILON, 100 * a.nrows().max(100));
-    let found =
-        schur.map(|s| s.complex_eigenvalues()).filter(|l| l.iter().all(|x| x.re.is_finite() && x.im.is_finite()));
-    found.map(|l| l.iter().copied().collect()).ok_or_else(|| {
-        fault("the eigenvalues of the linear model are not found", "check inertias and stiffnesses for extreme values")
-    })
+    // The iteration may go in circles where eigenvalues lie as far on one side of zero as on the other; in other axes it does not.
+    for turns in 0..4 {
+        let schur = Schur::try_new(balanced.clone(), f64::EPSILON, 100 * n.max(10));
+        let found = schur.map(|s| s.complex_eigenvalues());
+        if let Some(found) = found.filter(|l| l.iter().all(|x| x.re.is_finite() && x.im.is_finite())) {
+            return Ok(found.iter().copied().collect());
+        }
+        let axes = DMatrix::from_fn(n, n, |i, j| no_pattern(i + n * j + turns)).qr().q();
+        balanced = axes.transpose() * balanced * axes;
+    }
+    Err(fault("the eigenvalues of the linear model are not found", "check inertias and stiffnesses for extreme values"))
 }
 
 /// The eigenvector of an eigenvalue, by inverse iteration. Equal eigenvalues get different vectors by their number.
 fn eigenvector(a: &DMatrix<f64>, lambda: Complex<f64>, number: usize) -> DVector<Complex<f64>> {
     let n = a.nrows();
     let mut aside = f64::EPSILON * a.norm();
-    // Any start will do that is not orthogonal to it: this one has no pattern.
-    let mut v = DVector::from_fn(n, |i, _| Complex::new(((i + 1) as f64 * 1.7 + number as f64).sin() + 0.1, 0.0));
+    // Any start will do that is not orthogonal to it.
+    let mut v = DVector::from_fn(n, |i, _| Complex::new(no_pattern(i + n * number), 0.0));
     for _ in 0..ITERATIONS {
         let shifted = a.map(|x| Complex::new(x, 0.0)) - DMatrix::from_diagonal_element(n, n, lambda + aside);
         match shifted.lu().solve(&v).filter(|x| x.iter().all(|x| x.re.is_finite() && x.im.is_finite())) {
@@ -113,6 +119,11 @@ fn eigenvector(a: &DMatrix<f64>, lambda: Complex<f64>, number: usize) -> DVector
         }
     }
     v
+}
+
+/// Numbers between −1 and 1 that look random.
+fn no_pattern(i: usize) -> f64 {
+    2.0 * ((i as f64 + 1.0) * 0.618_033_988_749_895 + 0.31).fract() - 1.0
 }
 
 const ITERATIONS: usize = 4;

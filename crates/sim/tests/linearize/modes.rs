@@ -1,14 +1,16 @@
 //! Laws of modes.
 
 use crate::single_link::{FRICTION, LINK, ROTOR, STIFFNESS, WEIGHT, linearizer};
-use crate::{arm, arms, assert_close, pose};
+use crate::{arm, arms, assert_close, numbers, pose};
 use gyroflex::model::Friction;
 use gyroflex::spatial::Vec3;
 use gyroflex_sim::coordinates::Coordinates;
 use gyroflex_sim::linearize::{KeptFriction, Linearizer, ModeKind, NaturalMode, Output, natural_modes};
+use gyroflex_sim::load::{LoadOptions, load};
 use gyroflex_sim::{Dynamics, Fidelity, Robot};
 use nalgebra::{Complex, DVector};
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 
 fn modes(linearizer: &mut Linearizer, q: &[f64]) -> Vec<NaturalMode> {
     let point = linearizer.equilibrium_at(q).expect("it fits");
@@ -102,17 +104,51 @@ fn every_shape_is_an_eigenvector_of_the_accelerations() {
     }
 }
 
+/// Asserts that all eigenvalues are found: their sum is the trace.
+fn assert_trace(name: &str, linearizer: &mut Linearizer, q: &[f64]) {
+    let point = linearizer.equilibrium_at(q).expect("it fits");
+    let linear = linearizer.linearize(&point, &Output::defaults()).expect("it fits");
+    let modes = natural_modes(&linear).unwrap_or_else(|e| panic!("{name}, {q:?}: {e}"));
+    let twice = |m: &NaturalMode| if m.kind == ModeKind::Oscillation { 2.0 } else { 1.0 };
+    let sum: f64 = modes.iter().map(|m| twice(m) * m.eigenvalue[0]).sum();
+    let size = modes.iter().map(|m| m.eigenvalue[0].hypot(m.eigenvalue[1])).fold(0.0, f64::max);
+    assert!((sum - linear.a.trace()).abs() <= 1e-9 * size, "{name}, {q:?}: {sum} instead of {}", linear.a.trace());
+}
+
 #[test]
 fn every_eigenvalue_is_in_one_mode() {
     for (name, mut linearizer, _) in arms() {
         let q = pose(&linearizer);
-        let point = linearizer.equilibrium_at(&q).expect("it fits");
-        let linear = linearizer.linearize(&point, &Output::defaults()).expect("it fits");
-        let modes = natural_modes(&linear).expect("they are found");
-        let sum: f64 =
-            modes.iter().map(|m| m.eigenvalue[0] * if m.kind == ModeKind::Oscillation { 2.0 } else { 1.0 }).sum();
-        assert_close(&format!("{name}: trace"), &[sum], &[linear.a.trace()], 1e-9);
+        assert_trace(&name, &mut linearizer, &q);
     }
+}
+
+#[test]
+fn the_projects_robots_have_all_their_modes_at_any_pose_fixed_and_floating() {
+    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
+    let mut count = 0;
+    for name in ["iiwa14", "manutec_r3", "planar_3r", "puma560", "single_link"] {
+        for floating in [false, true] {
+            let options = LoadOptions { floating, ..LoadOptions::default() };
+            // Most bases are too light to float with their motors.
+            let Ok(robot) = load(&robots.join(name).join("robot.yaml"), &options) else { continue };
+            for model in Fidelity::ALL {
+                let mut linearizer = Linearizer::new(&robot, model, KeptFriction::Viscous).expect("it is physical");
+                let joints = linearizer.layout().inputs().len();
+                for seed in 0..10 {
+                    let mut q = linearizer.zero_position();
+                    let first = q.len() - joints;
+                    q[first..]
+                        .iter_mut()
+                        .zip(numbers(seed, joints))
+                        .for_each(|(q, x)| *q = 3.0 * x * seed.min(1) as f64);
+                    assert_trace(&format!("{name}, {model:?}, floating: {floating}"), &mut linearizer, &q);
+                    count += 1;
+                }
+            }
+        }
+    }
+    assert_eq!(count, 6 * 4 * 10);
 }
 
 #[test]
