@@ -4,7 +4,9 @@
 //! angular part first), reflected positions of the motors behind elastic transmissions, and the velocities of both. Input `u`: the
 //! reflected motor torques of the joints; a floating root has no motors. Both are deviations from the operating point:
 //!
-//!     ẋ = A x + B u,    y = C x + D u.
+//! ```text
+//! ẋ = A x + B u,    y = C x + D u.
+//! ```
 
 mod discrete;
 mod extremes;
