@@ -78,6 +78,63 @@ pub fn operational_len<P: Scalar>(model: &Model<P>, directions: usize) -> usize 
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model, the frame's body is not one of its bodies or a direction is not below 6; nothing is
 /// written then.
+///
+/// # Example
+///
+/// What the tip of a flexible link, half a metre from its joint, weighs for a hand that pushes it up or down.
+///
+/// ```
+/// use gyroflex::dynamics::{DerivativeScratch, Frame, OperationalSpace, Rotation, State, Task, operational_len, operational_space};
+/// # use gyroflex::model::*;
+/// # use gyroflex::spatial::{SpatialInertia, SymMat3, Transform, Vec3};
+/// # let axis = Vec3::new(0.0, 1.0, 0.0);
+/// # let mount = MountSpec { body: None, placement: Transform::identity(), axis };
+/// # let link = BodySpec {
+/// #     parent: None,
+/// #     joint: JointKind::Revolute,
+/// #     axis,
+/// #     placement: Transform::identity(),
+/// #     inertia: SpatialInertia::from_com(2.0, Vec3::new(0.25, 0.0, 0.0), SymMat3::diagonal(1e-3, 0.04, 0.04)),
+/// #     friction: Friction::none(),
+/// #     drive: Some(DriveSpec {
+/// #         rotor: RotorSpec { inertia: 2e-5, body: None, mount },
+/// #         gear_ratio: 100.0,
+/// #         transmission: TransmissionSpec::Elastic {
+/// #             spring: SpringSpec::Polynomial { stiffness: 4000.0, cubic: 0.0 },
+/// #             damping: 5.0,
+/// #             error: TransmissionError::none(),
+/// #         },
+/// #         friction: Friction::none(),
+/// #     }),
+/// # };
+/// # let robot = RobotSpec { bodies: &[link], spring_tables: &[], gravity: Vec3::new(0.0, 0.0, -9.81) };
+/// let mut bodies = [Body::empty(); 1];
+/// let model = robot.lower(Fidelity::Complete, &mut bodies, &mut [])?;
+///
+/// let frame = Frame { body: 0, placement: Transform::from_pose(gyroflex::spatial::Mat3::identity(), Vec3::new(0.5, 0.0, 0.0)) };
+/// let upwards = [5];
+/// let task = Task { frame, directions: &upwards, rotation: Rotation::Geometric, threshold: 1e-6 };
+/// let mut matrix = vec![0.0; operational_len(&model, upwards.len())];
+/// let (mut jacobian, mut bias, mut inertia, mut inverse, mut mu, mut p) = ([0.0_f64], [0.0], [0.0], [0.0], [0.0], [0.0]);
+/// operational_space(
+///     &model,
+///     State { q: &[0.0], qd: &[0.0], theta: &[0.0], thetad: &[0.0] },
+///     task,
+///     &mut [DerivativeScratch::new()],
+///     &mut matrix,
+///     OperationalSpace {
+///         jacobian: &mut jacobian,
+///         bias_acceleration: &mut bias,
+///         inertia: &mut inertia,
+///         inverse: &mut inverse,
+///         velocity_force: &mut mu,
+///         gravity_force: &mut p,
+///     },
+/// )?;
+/// assert!((inertia[0] - (0.04 + 2.0 * 0.25 * 0.25) / (0.5 * 0.5)).abs() < 1e-12);
+/// assert!((p[0] - 2.0 * 9.81 * 0.25 / 0.5).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn operational_space<T: Scalar>(
     model: &Model<T::Param>,
     state: State<T>,

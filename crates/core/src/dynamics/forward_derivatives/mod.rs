@@ -48,6 +48,59 @@ pub fn derivative_matrix_len<P: Scalar>(model: &Model<P>) -> usize {
 ///
 /// # Errors
 /// [`SizeError`] if a slice does not fit the model; nothing is written then.
+///
+/// # Example
+///
+/// The flexible link of the crate's example: the spring pulls link and rotor together.
+///
+/// ```
+/// use gyroflex::dynamics::{DerivativeScratch, External, Forward, ForwardDerivatives, State, derivative_matrix_len, forward_derivatives};
+/// # use gyroflex::model::*;
+/// # use gyroflex::spatial::{SpatialInertia, SymMat3, Transform, Vec3};
+/// # let axis = Vec3::new(0.0, 1.0, 0.0);
+/// # let mount = MountSpec { body: None, placement: Transform::identity(), axis };
+/// # let link = BodySpec {
+/// #     parent: None,
+/// #     joint: JointKind::Revolute,
+/// #     axis,
+/// #     placement: Transform::identity(),
+/// #     inertia: SpatialInertia::from_com(2.0, Vec3::new(0.25, 0.0, 0.0), SymMat3::diagonal(1e-3, 0.04, 0.04)),
+/// #     friction: Friction::none(),
+/// #     drive: Some(DriveSpec {
+/// #         rotor: RotorSpec { inertia: 2e-5, body: None, mount },
+/// #         gear_ratio: 100.0,
+/// #         transmission: TransmissionSpec::Elastic {
+/// #             spring: SpringSpec::Polynomial { stiffness: 4000.0, cubic: 0.0 },
+/// #             damping: 5.0,
+/// #             error: TransmissionError::none(),
+/// #         },
+/// #         friction: Friction::none(),
+/// #     }),
+/// # };
+/// # let robot = RobotSpec { bodies: &[link], spring_tables: &[], gravity: Vec3::new(0.0, 0.0, -9.81) };
+/// let mut bodies = [Body::empty(); 1];
+/// let model = robot.lower(Fidelity::Complete, &mut bodies, &mut [])?;
+///
+/// let (mut qdd, mut thetadd, mut tau_j) = ([0.0_f64], [0.0], [0.0]);
+/// let (mut by_qdd, mut by_thetadd) = ([0.0; 5], [0.0; 5]);
+/// let mut matrix = vec![0.0; derivative_matrix_len(&model)];
+/// forward_derivatives(
+///     &model,
+///     State { q: &[0.3], qd: &[0.0], theta: &[0.3], thetad: &[0.0] },
+///     &[0.0],
+///     External::none(),
+///     &mut [DerivativeScratch::new()],
+///     &mut matrix,
+///     Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j },
+///     ForwardDerivatives { qdd: &mut by_qdd, thetadd: &mut by_thetadd },
+/// )?;
+/// let (inertia, rotor, stiffness) = (0.04 + 2.0 * 0.25 * 0.25, 2e-5 * 100.0 * 100.0, 4000.0);
+/// let [by_q, _by_qd, by_theta, _by_thetad, by_tau] = by_thetadd;
+/// assert!((by_qdd[2] - stiffness / inertia).abs() < 1e-9);
+/// assert!((by_theta + stiffness / rotor).abs() < 1e-9 && (by_q - stiffness / rotor).abs() < 1e-9);
+/// assert!((by_tau - 1.0 / rotor).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[expect(clippy::too_many_arguments)]
 pub fn forward_derivatives<T: Scalar>(
     model: &Model<T::Param>,
