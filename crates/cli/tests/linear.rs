@@ -73,6 +73,21 @@ fn a_free_floating_robot_has_no_input_at_its_root_and_says_what_holds_it() {
 }
 
 #[test]
+fn a_robot_without_joints_has_no_modes_and_one_that_only_floats_has_rigid_ones() {
+    let here = folder("rock");
+    let inertia = r#"<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>"#;
+    let link = format!(r#"<link name="rock"><inertial><mass value="1"/>{inertia}</inertial></link>"#);
+    write(&here, "rock.urdf", &format!(r#"<robot name="rock">{link}</robot>"#));
+    let fixed = gyroflex(&here, &["modes", "rock.urdf", "--plot", "rock.png"]);
+    assert!(fixed.code == Some(0) && fixed.out.ends_with("it has no joints, and no modes\n"), "{fixed:?}");
+    assert_eq!(json(&gyroflex(&here, &["linearize", "rock.urdf", "--zoh", "0.1"]))["A"], serde_json::json!([]));
+    let floating = json(&gyroflex(&here, &["modes", "rock.urdf", "--floating", "--json"]));
+    let kinds: Vec<&str> =
+        floating["modes"].as_array().expect("a list").iter().filter_map(|m| m["kind"].as_str()).collect();
+    assert_eq!(kinds, ["rigid"; 4]);
+}
+
+#[test]
 fn pictures_are_svg_or_png_as_their_names_say() {
     let here = pendulum("plots");
     for (command, more) in [("modes", &[][..]), ("frf", &["--joint", "hinge"][..])] {
