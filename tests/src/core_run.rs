@@ -154,7 +154,7 @@ impl<T: Real> Core<T> {
         Power { supplied: p.supplied.to_f64(), dissipated: p.dissipated.to_f64() }
     }
 
-    fn call<R>(&self, s: &Point, mut run: impl FnMut(&Inputs<T>) -> Result<R, SizeError>) -> R {
+    pub(crate) fn call<R>(&self, s: &Point, mut run: impl FnMut(&Inputs<T>) -> Result<R, SizeError>) -> R {
         let x = Inputs::new(s);
         if self.dirty {
             run(&x.spoilt()).expect("slices fit the model");
@@ -164,8 +164,8 @@ impl<T: Real> Core<T> {
 }
 
 /// A state in the scalar.
-struct Inputs<T> {
-    q: Vec<T>,
+pub(crate) struct Inputs<T> {
+    pub(crate) q: Vec<T>,
     qd: Vec<T>,
     theta: Vec<T>,
     thetad: Vec<T>,
@@ -207,7 +207,7 @@ impl<T: Real> Inputs<T> {
         }
     }
 
-    fn state(&self) -> State<'_, T> {
+    pub(crate) fn state(&self) -> State<'_, T> {
         State { q: &self.q, qd: &self.qd, theta: &self.theta, thetad: &self.thetad }
     }
 
@@ -216,7 +216,7 @@ impl<T: Real> Inputs<T> {
     }
 }
 
-fn nan<T: Real>() -> T {
+pub(crate) fn nan<T: Real>() -> T {
     T::from_f64(f64::NAN)
 }
 
@@ -224,6 +224,6 @@ fn cast<T: Real>(x: &[f64]) -> Vec<T> {
     x.iter().map(|x| T::from_f64(*x)).collect()
 }
 
-fn double<T: Real>(x: &[T]) -> Vec<f64> {
+pub(crate) fn double<T: Real>(x: &[T]) -> Vec<f64> {
     x.iter().map(|x| x.to_f64()).collect()
 }

@@ -2,10 +2,10 @@
 
 use core::fmt;
 use gyroflex::model::Fidelity;
-use gyroflex_testkit::State;
 use gyroflex_testkit::dense::Oracle;
 use gyroflex_testkit::random::{Options, RandomRobot};
 use gyroflex_testkit::tolerance::{Real, Tolerance, assert_close_above};
+use gyroflex_testkit::{EnergyOracle, State};
 
 use crate::Core;
 
@@ -35,6 +35,11 @@ impl<'a, T: Real> Trial<'a, T> {
     /// The oracle of the same robot and model.
     pub fn oracle(&self) -> Oracle<'_> {
         Oracle::new(self.robot.spec(), self.fidelity)
+    }
+
+    /// The oracle of energies, of the same.
+    pub fn energies(&self) -> EnergyOracle<'_> {
+        EnergyOracle::new(self.robot.spec(), self.fidelity)
     }
 
     /// Asserts that two vectors agree, relative to the larger of `want` and `floor`.

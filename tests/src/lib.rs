@@ -3,6 +3,8 @@
 
 mod core_run;
 mod laws;
+mod velocity_run;
 
 pub use core_run::Core;
 pub use laws::{Trial, for_trials, small};
+pub use velocity_run::Coriolis;

@@ -1,10 +1,11 @@
-//! What the tests of gyroflex measure against: random robots, a dense oracle that shares no algorithm with the core,
+//! What the tests of gyroflex measure against: random robots, a dense oracle and one of energies that share no algorithm with the core,
 //! reference cases from outside, and tolerances.
 //!
 //! Nothing here is published, and nothing here is fast on purpose.
 
 pub mod dense;
 pub mod dual;
+pub mod energy_oracle;
 pub mod lowered;
 pub mod random;
 pub mod reference;
@@ -12,5 +13,6 @@ pub mod state;
 pub mod tolerance;
 
 pub use dual::Dual;
+pub use energy_oracle::EnergyOracle;
 pub use lowered::Lowered;
 pub use state::State;
