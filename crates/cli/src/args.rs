@@ -118,7 +118,8 @@ pub struct Eval {
     /// Which physics of the motors to keep [default: as the robot says]
     #[arg(long)]
     pub model: Option<ModelName>,
-    /// Add the inertia matrix M, the coupling S of links and motors, and the rotor inertias B
+    /// Add the inertia matrix M, the coupling S of links and motors, the rotor inertias B and the gravity torques g; with qd
+    /// (and thetad) also the Coriolis blocks C, C1, C2 and the rates M_dot, S_dot
     #[arg(long)]
     pub matrices: bool,
     /// Add the kinetic, gravity, elastic and total energy
@@ -127,7 +128,7 @@ pub struct Eval {
     /// Add the significance ratio r_s of the gyroscopic coupling, its bounds and extremes, those of the complete model
     #[arg(long)]
     pub significance: bool,
-    /// Take and print rotor angles and motor torques instead of reflected ones (theta, thetad, thetadd, tau, S, B)
+    /// Take and print rotor angles and motor torques instead of reflected ones (theta, thetad, thetadd, tau, S, B, C1, C2, S_dot)
     #[arg(long)]
     pub motor_side: bool,
     /// Put the root on a floating joint

@@ -1,10 +1,12 @@
 //! A model together with the scratch its algorithms need: allocated once, nothing per call.
 
+mod matrices;
+
 use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
 use gyroflex::dynamics::{
-    self, AbaScratch, Acceleration, CrbaScratch, Energy, External, Forward, ForwardScratch, Inverse, JointSpaceScratch,
-    Power, RneaScratch, State,
+    self, AbaScratch, Acceleration, CrbaScratch, DerivativeScratch, Energy, External, Forward, ForwardScratch, Inverse,
+    JointSpaceScratch, Power, RneaScratch, State,
 };
 use gyroflex::integrate::{self, StateMut};
 use gyroflex::model::{Model, SizeError};
@@ -21,6 +23,8 @@ pub struct Dynamics {
     crba: Vec<CrbaScratch<f64>>,
     moving: Vec<(Transform<f64>, Motion<f64>)>,
     work: Vec<f64>,
+    derivative: Vec<DerivativeScratch<f64>>,
+    operational: Vec<f64>,
 }
 
 impl Dynamics {
@@ -38,6 +42,8 @@ impl Dynamics {
             crba: vec![CrbaScratch::new(); n],
             moving: vec![(Transform::identity(), Motion::zero()); n],
             work: vec![0.0; work],
+            derivative: vec![DerivativeScratch::new(); n],
+            operational: Vec::new(),
             model,
         }
     }

@@ -116,7 +116,7 @@ fn positions_alone_are_enough_for_matrices_and_significance() {
     let options = Options { energy: false, ..ALL };
     let answer = json(options, r#"{"q": [0.1, 0.2, 0.3]}"#);
     let keys: Vec<&str> = answer.as_object().expect("an object").keys().map(String::as_str).collect();
-    assert_eq!(keys, ["M", "S", "B", "significance"]);
+    assert_eq!(keys, ["M", "S", "B", "g", "significance"]);
     assert!(answer["significance"]["r_s"].is_null());
     let error = evaluator(ALL).evaluate_line(r#"{"q": [0.1, 0.2, 0.3]}"#).expect_err("the energy needs velocities");
     assert_eq!(error.element, "qd");

@@ -187,3 +187,51 @@ fn answers_read_back_to_the_same_bits() {
     assert_eq!(numbers(&read["thetadd"]), bits(get(&value.thetadd)));
     assert_eq!(numbers(&read["M"][1]), bits(&value.m.expect("asked for")[1]));
 }
+
+/// `M q̈ + S θ̈ + C q̇ + C₁ θ̇ + g`: all of inverse dynamics on the link side but friction, which is odd in the velocities, as the
+/// matrices at `−q̇, −θ̇` are.
+#[test]
+fn matrices_make_up_inverse_dynamics() {
+    for floating in [false, true] {
+        for fidelity in Fidelity::ALL {
+            for motor_side in [false, true] {
+                let options = Options { fidelity: Some(fidelity), motor_side, matrices: true, ..Options::default() };
+                let joints = if floating { 6 } else { 0 };
+                let moving = Query {
+                    qdd: Some((0..3 + joints).map(|i| 0.3 * i as f64 - 0.4).collect()),
+                    thetadd: Some(vec![-2.0, 0.0, 0.0]),
+                    ..state(floating)
+                };
+                let back = |v: &Option<Vec<f64>>| v.as_ref().map(|v| v.iter().map(|x| -x).collect::<Vec<_>>());
+                let backwards = Query { qd: back(&moving.qd), thetad: back(&moving.thetad), ..moving.clone() };
+                let (there, back) = (answer(floating, options, &moving), answer(floating, options, &backwards));
+                // Half the sum: what is even in the velocities. A rigidly geared rotor is part of `M`, but not of `tau_j`.
+                let elastic = matches!(fidelity, Fidelity::Complete | Fidelity::Reduced);
+                let whole = |answer: &Answer, i: usize| match i.checked_sub(joints) {
+                    Some(joint) if joint < 2 && !(joint == 0 && elastic) => {
+                        get(&answer.tau)[i] * if motor_side { RATIOS[joint] } else { 1.0 }
+                    }
+                    _ => get(&answer.tau_j)[i],
+                };
+                let even: Vec<f64> = (0..3 + joints).map(|i| 0.5 * (whole(&there, i) + whole(&back, i))).collect();
+                let motors = |v: &Option<Vec<f64>>| -> Vec<f64> {
+                    vec![0.0; joints].into_iter().chain(get(v).iter().copied()).collect()
+                };
+                let times = |m: &[Vec<f64>], v: &[f64]| -> Vec<f64> {
+                    m.iter().map(|row| row.iter().zip(v).map(|(m, v)| m * v).sum()).collect()
+                };
+                let velocity = there.velocity_matrices.as_ref().expect("velocities are given");
+                let parts = [
+                    times(there.m.as_ref().expect("asked for"), get(&moving.qdd)),
+                    times(there.s.as_ref().expect("asked for"), &motors(&moving.thetadd)),
+                    times(&velocity.c, get(&moving.qd)),
+                    times(&velocity.c1, &motors(&moving.thetad)),
+                    get(&there.g).to_vec(),
+                ];
+                let sum: Vec<f64> = (0..even.len()).map(|i| parts.iter().map(|p| p[i]).sum()).collect();
+                // A floating root's `tau_j` is the wrench on it.
+                assert_close(&sum, &even, &format!("{} floating {floating} motor side {motor_side}", fidelity.name()));
+            }
+        }
+    }
+}

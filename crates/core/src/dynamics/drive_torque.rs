@@ -113,3 +113,41 @@ pub(super) fn rotor_acceleration<T: Scalar>(rotor: &Rotor<T::Param>, on_rotor: T
 pub(super) fn rotor_torque<T: Scalar>(rotor: &Rotor<T::Param>, qdd: T, alpha: Vec3<T>) -> T {
     T::from_param(rotor.reflected_inertia).mul_add(qdd, rotor.coupling().dot(alpha))
 }
+
+/// How the torques of [`drives`] change with `q, q̇, θ, θ̇, τ` of their joint.
+pub(super) struct Sensitivity<T> {
+    /// Of what acts on the link.
+    pub(super) on_link: [T; 5],
+    /// Of what acts on an elastic joint's rotor.
+    pub(super) on_rotor: [T; 5],
+}
+
+/// The same at the present state.
+#[inline(always)]
+pub(super) fn sensitivity<T: Scalar>(
+    body: &Body<T::Param>,
+    at: JointState<T>,
+    knots: &[Knot<T::Param>],
+) -> Sensitivity<T> {
+    let (zero, one) = (T::zero(), T::one());
+    let link = body.friction.slope(at.qd);
+    let rigid = |friction: T| Sensitivity { on_link: [zero, -friction, zero, zero, one], on_rotor: [zero; 5] };
+    let Some(drive) = &body.drive else { return rigid(link) };
+    let rotor = &drive.rotor;
+    let Some(elastic) = &drive.elastic else { return rigid(link + rotor.reflected_friction_slope(at.qd)) };
+
+    // τ_J = k(δ) + D δ̇ with δ = θ − q − e(θ),   r = τ − (1 − e') τ_J − N f_m
+    let (e, _) = transmission_error(elastic, rotor, at.theta);
+    let t = transmitted(elastic, rotor, at, knots);
+    let curvature = elastic.error.map_or(zero, |error| error.curvature(e, T::from_param(rotor.gear_ratio)));
+    let (stiffness, damping) = (elastic.spring.slope(t.deflection, knots), T::from_param(elastic.damping));
+    let by_theta = stiffness.mul_add(t.on_motor, -(damping * curvature * at.thetad));
+    let tau_j = [-stiffness, -damping, by_theta, damping * t.on_motor, zero];
+    let mut on_rotor = tau_j.map(|x| -(t.on_motor * x));
+    on_rotor[2] += curvature * t.tau_j;
+    on_rotor[3] -= rotor.reflected_friction_slope(at.thetad);
+    on_rotor[4] = one;
+    let mut on_link = tau_j;
+    on_link[1] -= link;
+    Sensitivity { on_link, on_rotor }
+}

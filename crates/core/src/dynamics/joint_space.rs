@@ -4,6 +4,7 @@
 //! vanishes unless one of the joints supports the other, because a carrier is an ancestor of its joint; so the
 //! factorisation `M = Lᵀ L` fills in nothing (RBDA §6.5) and costs O(n·depth²).
 
+use super::branches::{factorise, solve};
 use super::drive_torque::{JointState, drives, rotor_acceleration, rotor_couple, rotor_torque};
 use super::kinematics::{transform, velocity};
 use super::{External, Forward, State, check_external, check_scratch, check_state};
@@ -78,7 +79,8 @@ pub fn forward_in_joint_space<T: Scalar>(
     let a_world = Motion { ang: Vec3::zero(), lin: -model.gravity.map(T::from_param) };
     outward(model, &state, tau, &ext, a_world, scratch, tau_j);
     matrix_and_load(model, tau, &ext, scratch, matrix, qdd);
-    solve_by_branches(model, matrix, qdd);
+    factorise::<T, T>(model, matrix);
+    solve::<T, T>(model, matrix, qdd, 1);
 
     // Accelerations of the links, and of the rotors.
     for (i, body) in model.bodies.iter().enumerate() {
@@ -201,47 +203,4 @@ fn matrix_and_load<T: Scalar>(
             load[k] = s.u - body.joint.along(s.f) - body.rigid_coupling().ang.dot(at_carrier);
         }
     }
-}
-
-/// Solves `M x = b` in place by `M = Lᵀ D L` along the branches (RBDA table 6.3): row `k` touches only coordinates that
-/// support it.
-fn solve_by_branches<P: Scalar, T: Scalar>(model: &Model<P>, m: &mut [T], b: &mut [T]) {
-    let nv = model.nv;
-    // Factorise, and carry b along: b ← L⁻ᵀ b.
-    for k in (0..nv).rev() {
-        let d_inv = T::one() / m[k * nv + k];
-        let mut i = supporting(model, k);
-        while let Some(row) = i {
-            let l = m[k * nv + row] * d_inv;
-            let mut j = Some(row);
-            while let Some(column) = j {
-                let update = l * m[k * nv + column];
-                m[row * nv + column] -= update;
-                j = supporting(model, column);
-            }
-            b[row] -= l * b[k];
-            m[k * nv + row] = l;
-            i = supporting(model, row);
-        }
-        b[k] = b[k] * d_inv;
-    }
-    // b ← L⁻¹ b, base to tips.
-    for k in 0..nv {
-        let mut i = supporting(model, k);
-        while let Some(row) = i {
-            b[k] -= m[k * nv + row] * b[row];
-            i = supporting(model, row);
-        }
-    }
-}
-
-/// The velocity coordinate next to `k` on the way to the base.
-fn supporting<P: Scalar>(model: &Model<P>, k: usize) -> Option<usize> {
-    let extra = if model.floating { 5 } else { 0 };
-    if k <= extra {
-        return k.checked_sub(1).filter(|_| model.floating);
-    }
-    let parent = model.bodies[k - extra].parent()?;
-    let base = &model.bodies[parent];
-    Some(base.v_index() + base.joint.nv() - 1)
 }

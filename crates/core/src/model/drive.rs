@@ -69,6 +69,13 @@ impl<T: Scalar> Rotor<T> {
         let n = F::from_param(self.gear_ratio);
         n * self.friction.torque(n * thetad)
     }
+
+    /// `N² f'(N θ̇)`: how fast that friction grows with the reflected speed [N m s/rad].
+    #[inline(always)]
+    pub fn reflected_friction_slope<F: Scalar<Param = T>>(&self, thetad: F) -> F {
+        let n = F::from_param(self.gear_ratio);
+        n * n * self.friction.slope(n * thetad)
+    }
 }
 
 /// An elastic transmission: spring and damper side by side, on the link side.
@@ -106,6 +113,13 @@ impl<T: Scalar> TransmissionError<T> {
             (F::from_param(self.amplitude), F::from_param(self.cycles_per_rotor_turn) * gear_ratio);
         let (s, c) = cycles.mul_add(theta, F::from_param(self.phase)).sin_cos();
         (amplitude * s, amplitude * cycles * c)
+    }
+
+    /// `e''(θ) = −(c N)² e` [1/rad] where the error is `e`.
+    #[inline(always)]
+    pub(crate) fn curvature<F: Scalar<Param = T>>(&self, e: F, gear_ratio: F) -> F {
+        let cycles = F::from_param(self.cycles_per_rotor_turn) * gear_ratio;
+        -(cycles * cycles * e)
     }
 
     fn map<U>(self, mut f: impl FnMut(T) -> U) -> TransmissionError<U> {

@@ -50,6 +50,21 @@ impl<T: Scalar> Friction<T> {
         dry.mul_add((v / F::from_param(self.smoothing_velocity)).tanh(), viscous)
     }
 
+    /// `df/dv` at velocity `v` [N m s/rad].
+    #[inline(always)]
+    pub fn slope<F: Scalar<Param = T>>(&self, v: F) -> F {
+        let viscous = F::from_param(self.viscous);
+        if !self.dry {
+            return viscous;
+        }
+        let (fade, smoothing) = (F::from_param(self.stribeck_velocity), F::from_param(self.smoothing_velocity));
+        let x = v / fade;
+        let excess = F::from_param(self.stribeck) * (-(x * x)).exp();
+        let sign = (v / smoothing).tanh();
+        let dry = F::from_param(self.coulomb) + excess;
+        viscous + dry * (F::one() - sign * sign) / smoothing - (x + x) / fade * excess * sign
+    }
+
     /// The same friction in another scalar.
     pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> Friction<U> {
         Friction {

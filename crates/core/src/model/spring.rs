@@ -47,6 +47,7 @@ impl<T: Scalar> Spring<T> {
     }
 
     /// `k'(δ)` [N m/rad].
+    #[inline(always)]
     pub fn slope<F: Scalar<Param = T>>(&self, deflection: F, knots: &[Knot<T>]) -> F {
         if self.knots == 0 {
             let (k, k3) = (F::from_param(self.stiffness), F::from_param(self.cubic));

@@ -2,6 +2,7 @@
 
 mod articulated;
 mod branch;
+mod coriolis;
 mod force;
 mod inertia;
 mod joint_transform;
@@ -16,6 +17,7 @@ mod vector;
 
 pub use articulated::ArticulatedInertia;
 pub use branch::Branch;
+pub use coriolis::Coriolis;
 pub use force::Force;
 pub use inertia::SpatialInertia;
 pub use joint_transform::JointTransform;

@@ -9,7 +9,6 @@
 mod bounds;
 mod error;
 mod motion;
-pub mod plot;
 mod recorded;
 mod report;
 mod search;

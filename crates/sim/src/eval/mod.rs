@@ -12,7 +12,7 @@ mod wrench;
 
 pub use input::{Query, Wrench, WrenchAxes};
 pub use layout::unit_quaternion;
-pub use output::{Answer, EnergyAnswer};
+pub use output::{Answer, EnergyAnswer, VelocityMatrices};
 pub use crate::analyze::{Significance, significance};
 
 use crate::Dynamics;
@@ -28,7 +28,7 @@ use layout::{Arrays, Layout};
 pub struct Options {
     /// Which physics of the motors; `None` is the robot's own choice.
     pub fidelity: Option<Fidelity>,
-    /// Whether to add `M`, `S` and `B` to the answer.
+    /// Whether to add `M`, `S`, `B` and `g` to the answer, and with velocities `C`, `C1`, `C2`, `M_dot` and `S_dot`.
     pub matrices: bool,
     /// Whether to add the energies to the answer.
     pub energy: bool,
@@ -152,6 +152,12 @@ impl Evaluator {
             self.dynamics.coupling(&q, &mut s)?;
             self.dynamics.reflected_inertia(&mut b)?;
             answer.set_matrices(&arrays, &m, &s, &b);
+            let mut g = zeros();
+            self.dynamics.gravity_torques(&q, &mut g)?;
+            answer.g = Some(g);
+            if query.qd.is_some() && (query.thetad.is_some() || !self.layout.has_elastic()) {
+                answer.velocity_matrices = Some(VelocityMatrices::at(&mut self.dynamics, state, &arrays)?);
+            }
         }
         if self.options.energy {
             answer.energy = Some(EnergyAnswer::from(self.dynamics.energy(state)?));

@@ -1,9 +1,10 @@
 //! The answer to one query.
 
 use super::layout::{Arrays, Layout};
+use crate::Dynamics;
 use crate::analyze::Significance;
 use crate::error::{Error, ErrorKind};
-use gyroflex::dynamics::Energy;
+use gyroflex::dynamics::{CoriolisMatrices, Energy, InertiaRates, State};
 use serde::Serialize;
 
 /// What was asked for; the rest is `None` and not printed. Vectors have `nv` entries, matrices `nv` rows of `nv`.
@@ -30,12 +31,55 @@ pub struct Answer {
     /// `B`: rotor inertias on the diagonal; zero where there is no elastic transmission.
     #[serde(rename = "B", skip_serializing_if = "Option::is_none")]
     pub b: Option<Vec<Vec<f64>>>,
+    /// `g(q)`: generalised forces that hold the links against gravity [N m or N].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub g: Option<Vec<f64>>,
+    /// `C, C1, C2, M_dot, S_dot`, where the velocities are given.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub velocity_matrices: Option<VelocityMatrices>,
     /// Energies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy: Option<EnergyAnswer>,
     /// Significance of the gyroscopic coupling.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub significance: Option<Significance>,
+}
+
+/// What the matrices become in motion: blocks of the Coriolis matrix in Christoffel form, and rates.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VelocityMatrices {
+    /// `C`: links by links.
+    #[serde(rename = "C")]
+    pub c: Vec<Vec<f64>>,
+    /// `C1`: links by motors.
+    #[serde(rename = "C1")]
+    pub c1: Vec<Vec<f64>>,
+    /// `C2`: motors by links.
+    #[serde(rename = "C2")]
+    pub c2: Vec<Vec<f64>>,
+    /// `dM/dt`.
+    #[serde(rename = "M_dot")]
+    pub m_dot: Vec<Vec<f64>>,
+    /// `dS/dt`.
+    #[serde(rename = "S_dot")]
+    pub s_dot: Vec<Vec<f64>>,
+}
+
+impl VelocityMatrices {
+    /// At a state, seen from the side the user wants: `C₁ N⁻¹`, `N⁻¹ C₂`, `Ṡ N⁻¹`.
+    pub(super) fn at(dynamics: &mut Dynamics, state: State<f64>, arrays: &Arrays) -> Result<Self, Error> {
+        let n = dynamics.nv();
+        let [mut c, mut c1, mut c2, mut m, mut s] = [(); 5].map(|()| vec![0.0; n * n]);
+        dynamics.coriolis_matrices(state, CoriolisMatrices { c: &mut c, c1: &mut c1, c2: &mut c2 })?;
+        dynamics.inertia_rates(state, InertiaRates { m: &mut m, s: &mut s })?;
+        Ok(Self {
+            c: rows(n, |i, j| c[i * n + j]),
+            c1: rows(n, |i, j| c1[i * n + j] / arrays.ratio(j)),
+            c2: rows(n, |i, j| c2[i * n + j] / arrays.ratio(i)),
+            m_dot: rows(n, |i, j| m[i * n + j]),
+            s_dot: rows(n, |i, j| s[i * n + j] / arrays.ratio(j)),
+        })
+    }
 }
 
 /// Energies [J].
@@ -70,15 +114,32 @@ impl Answer {
 
     /// Nothing that is not a number leaves this house.
     pub(super) fn check_finite(&self, layout: &Layout) -> Result<(), Error> {
-        let vectors = [("qdd", &self.qdd), ("thetadd", &self.thetadd), ("tau_j", &self.tau_j), ("tau", &self.tau)];
+        let vectors = [
+            ("qdd", &self.qdd),
+            ("thetadd", &self.thetadd),
+            ("tau_j", &self.tau_j),
+            ("tau", &self.tau),
+            ("g", &self.g),
+        ];
         for (key, vector) in vectors {
             if let Some(k) = vector.as_ref().and_then(|v| v.iter().position(|x| !x.is_finite())) {
                 return Err(not_finite(&format!("joint `{}`", layout.joints[k]), key));
             }
         }
-        for (key, matrix) in [("M", &self.m), ("S", &self.s), ("B", &self.b)] {
+        let moving = self.velocity_matrices.as_ref();
+        let matrices = [
+            ("M", self.m.as_ref()),
+            ("S", self.s.as_ref()),
+            ("B", self.b.as_ref()),
+            ("C", moving.map(|m| &m.c)),
+            ("C1", moving.map(|m| &m.c1)),
+            ("C2", moving.map(|m| &m.c2)),
+            ("M_dot", moving.map(|m| &m.m_dot)),
+            ("S_dot", moving.map(|m| &m.s_dot)),
+        ];
+        for (key, matrix) in matrices {
             let wrong = |row: &Vec<f64>| row.iter().any(|x| !x.is_finite());
-            if let Some(k) = matrix.as_ref().and_then(|m| m.iter().position(wrong)) {
+            if let Some(k) = matrix.and_then(|m| m.iter().position(wrong)) {
                 return Err(not_finite(&format!("joint `{}`", layout.joints[k]), key));
             }
         }
