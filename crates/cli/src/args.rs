@@ -1,8 +1,10 @@
 //! What the command line may say.
 
 mod bench;
+mod linear;
 
 pub use bench::Bench;
+pub use linear::{Frf, Linearize, Modes, Pose};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -34,6 +36,9 @@ pub enum Command {
     Simulate(Simulate),
     Info(Info),
     Eval(Eval),
+    Linearize(Linearize),
+    Modes(Modes),
+    Frf(Frf),
     Bench(Bench),
     Export(Export),
     Schema(Schema),

@@ -4,6 +4,8 @@ mod args;
 mod builtin;
 mod commands;
 mod failure;
+mod json;
+mod plot;
 mod progress;
 mod report;
 
@@ -17,6 +19,9 @@ fn main() -> ExitCode {
         Command::Simulate(args) => commands::simulate::run(args, cli.quiet),
         Command::Info(args) => commands::info::run(args, cli.quiet),
         Command::Eval(args) => commands::eval::run(args, cli.quiet),
+        Command::Linearize(args) => commands::linearize::run(args, cli.quiet),
+        Command::Modes(args) => commands::modes::run(args, cli.quiet),
+        Command::Frf(args) => commands::frf::run(args, cli.quiet),
         Command::Bench(args) => commands::bench::run(args, cli.quiet),
         Command::Export(args) => commands::export::run(args, cli.quiet),
         Command::Schema(args) => commands::schema::run(args),

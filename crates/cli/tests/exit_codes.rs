@@ -17,6 +17,12 @@ fn a_wrong_command_line_ends_with_2() {
         &["simulate", "--duration", "-1"],
         &["bench", "robot.urdf", "--calls", "0"],
         &["schema", "universe"],
+        &["linearize", "robot.urdf", "--zoh", "0"],
+        &["linearize", "robot.urdf", "--at", "1"],
+        &["linearize", "robot.urdf", "--scenario", "scenario.yaml"],
+        &["modes", "robot.urdf", "--plot", "modes.pdf"],
+        &["frf", "robot.urdf"],
+        &["frf", "robot.urdf", "--joint", "a", "--points", "1"],
         &["export", "robot.urdf"],
         &["export", "--rust", "robot.urdf", "--scalar", "f16"],
     ] {
@@ -40,7 +46,8 @@ fn help_and_version_end_with_0_on_standard_output_and_document_the_exit_codes() 
         "{}",
         help.out
     );
-    for command in ["simulate", "info", "eval", "bench", "export", "schema", "completions"] {
+    for command in ["simulate", "info", "eval", "linearize", "modes", "frf", "bench", "export", "schema", "completions"]
+    {
         let help = gyroflex(&here, &[command, "--help"]);
         assert_eq!(help.code, Some(0));
         assert!(help.out.contains("Example"), "{command} shows no example");

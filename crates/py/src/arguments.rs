@@ -100,7 +100,8 @@ pub(crate) fn mimic(name: &str) -> PyResult<Mimic> {
     choice("mimic", name, &[("refuse", Mimic::Refuse), ("independent", Mimic::Independent)])
 }
 
-fn choice<T: Copy>(argument: &str, name: &str, known: &[(&str, T)]) -> PyResult<T> {
+/// The choice of that name.
+pub(crate) fn choice<T: Copy>(argument: &str, name: &str, known: &[(&str, T)]) -> PyResult<T> {
     known.iter().find(|(n, _)| *n == name).map(|(_, value)| *value).ok_or_else(|| {
         let names: Vec<&str> = known.iter().map(|(n, _)| *n).collect();
         let near = nearest(name, names.iter().copied()).unwrap_or_default();

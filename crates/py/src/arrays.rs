@@ -2,12 +2,15 @@
 //! Arrays out: new ones, checked too.
 
 use crate::errors;
-use numpy::{PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{
+    Complex64, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
 pub(crate) type Vector<'py> = Bound<'py, PyArray1<f64>>;
 pub(crate) type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+pub(crate) type Complexes<'py> = Bound<'py, PyArray1<Complex64>>;
 
 /// Copies a vector argument into `out`.
 ///
@@ -99,6 +102,24 @@ pub(crate) fn vector<'py>(py: Python<'py>, name: &str, numbers: &[f64]) -> PyRes
 pub(crate) fn matrix<'py>(py: Python<'py>, name: &str, numbers: &[f64], n: usize) -> PyResult<Matrix<'py>> {
     check_result(name, numbers)?;
     PyArray1::from_slice(py, numbers).reshape([n, n])
+}
+
+/// A matrix from its rows, of so many columns.
+pub(crate) fn rectangle<'py>(py: Python<'py>, name: &str, rows: &[Vec<f64>], columns: usize) -> PyResult<Matrix<'py>> {
+    let numbers = rows.concat();
+    check_result(name, &numbers)?;
+    PyArray1::from_vec(py, numbers).reshape([rows.len(), columns])
+}
+
+/// A result of complex numbers.
+pub(crate) fn complexes<'py>(
+    py: Python<'py>,
+    name: &str,
+    numbers: impl Iterator<Item = Complex64>,
+) -> PyResult<Complexes<'py>> {
+    let numbers: Vec<Complex64> = numbers.collect();
+    numbers.iter().try_for_each(|z| check_result(name, &[z.re, z.im]))?;
+    Ok(PyArray1::from_vec(py, numbers))
 }
 
 /// Nothing that is not a number leaves this house.

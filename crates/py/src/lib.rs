@@ -3,6 +3,7 @@
 mod arguments;
 mod arrays;
 mod errors;
+mod linear;
 mod robot;
 mod simulate;
 mod workspace;
@@ -14,6 +15,8 @@ use pyo3::prelude::*;
 mod _gyroflex {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::linear::{PyFrequencyResponse, PyLinearization, PyMode};
     #[pymodule_export]
     use crate::robot::PyRobot;
     #[pymodule_export]

@@ -25,9 +25,9 @@ use std::path::PathBuf;
 /// `model` is one of `complete`, `reduced`, `rigid`, `rigid_reflected`; the default is the one of the robot's file.
 #[pyclass(name = "Robot", module = "gyroflex", frozen)]
 pub(crate) struct PyRobot {
-    robot: Robot,
+    pub(crate) robot: Robot,
     pool: Pool,
-    layout: Layout,
+    pub(crate) layout: Layout,
 }
 
 #[pymethods]

@@ -22,6 +22,9 @@ def main(path: Path) -> None:
     q = np.zeros(robot.nq)
     for joint, torque in zip(robot.joint_names, holding_torques(robot, q), strict=True):
         print(f"{joint}: {torque:.3f}")
+    linear = robot.linearize(q, outputs="joint_torque")
+    print(linear.zero_order_hold(1e-3).A.shape, [mode.frequency for mode in linear.modes() if mode.kind == "oscillation"])
+    print(robot.frequency_response(robot.joint_names[0], q, points=10).resonances)
     try:
         robot.placement("no such link", q)
     except gyroflex.ArgumentError as error:

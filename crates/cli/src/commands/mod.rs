@@ -4,7 +4,12 @@ pub mod bench;
 pub mod completions;
 pub mod eval;
 pub mod export;
+pub mod frf;
 pub mod info;
+pub mod linearize;
+pub mod modes;
+mod output;
+mod pose;
 pub mod schema;
 pub mod simulate;
 

@@ -10,7 +10,7 @@ link side of the gear.
 >>> qdd, thetadd = robot.forward_dynamics(q, still, theta, still, tau)
 """
 
-from ._gyroflex import Robot, __version__
+from ._gyroflex import FrequencyResponse, Linearization, Mode, Robot, __version__
 from .errors import (
     ArgumentError,
     DivergedError,
@@ -31,6 +31,9 @@ __all__ = [
     "Error",
     "FileError",
     "FormatError",
+    "FrequencyResponse",
+    "Linearization",
+    "Mode",
     "ModelError",
     "NotFiniteError",
     "Robot",

@@ -1,6 +1,7 @@
 """The compiled half of the package; `gyroflex` exports what users need of it."""
 
 import os
+from collections.abc import Sequence
 from typing import Literal, TypeAlias, final
 
 import numpy as np
@@ -8,12 +9,132 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import DivergedError
 
-__all__ = ["Robot", "run_scenario", "__version__"]
+__all__ = ["FrequencyResponse", "Linearization", "Mode", "Robot", "run_scenario", "__version__"]
 
 __version__: str
 
 _Model: TypeAlias = Literal["complete", "reduced", "rigid", "rigid_reflected"]
+_Friction: TypeAlias = Literal["all", "viscous", "none"]
 _Vector: TypeAlias = NDArray[np.float64]
+_Complexes: TypeAlias = NDArray[np.complex128]
+
+@final
+class Linearization:
+    """A linear model `x' = A x + B u, y = C x + D u`, or, sampled, `x[k+1] = A x[k] + B u[k]`; all are deviations."""
+
+    @property
+    def A(self) -> NDArray[np.float64]:
+        """`A`, shape `(states, states)`."""
+
+    @property
+    def B(self) -> NDArray[np.float64]:
+        """`B`, shape `(states, inputs)`."""
+
+    @property
+    def C(self) -> NDArray[np.float64]:
+        """`C`, shape `(outputs, states)`."""
+
+    @property
+    def D(self) -> NDArray[np.float64]:
+        """`D`, shape `(outputs, inputs)`."""
+
+    @property
+    def states(self) -> list[str]:
+        """Names of the states, as `q.joint1`, `theta.joint1`, `qd.joint1`, `thetad.joint1`."""
+
+    @property
+    def inputs(self) -> list[str]:
+        """Names of the inputs, as `tau.joint1`."""
+
+    @property
+    def outputs(self) -> list[str]:
+        """Names of the outputs, as `motor_position.joint1` or `pose.tool.x`."""
+
+    @property
+    def q(self) -> _Vector:
+        """Joint positions at the operating point, shape `(nq,)`."""
+
+    @property
+    def qd(self) -> _Vector:
+        """Joint velocities there, shape `(nv,)`."""
+
+    @property
+    def theta(self) -> _Vector:
+        """Motor positions there, seen from the link side, shape `(nv,)`."""
+
+    @property
+    def thetad(self) -> _Vector:
+        """Motor velocities there, seen from the link side, shape `(nv,)`."""
+
+    @property
+    def tau(self) -> _Vector:
+        """Motor torques there, seen from the link side, shape `(nv,)`."""
+
+    @property
+    def step(self) -> float | None:
+        """Sampling time [s]; `None` in continuous time."""
+
+    def zero_order_hold(self, step: float) -> Linearization:
+        """The model sampled exactly, with inputs held between samples."""
+
+    def modes(self) -> list[Mode]:
+        """The modes of a model in continuous time, from the slowest to the fastest."""
+
+@final
+class Mode:
+    """One way a robot moves by itself."""
+
+    @property
+    def kind(self) -> Literal["oscillation", "decay", "growth", "rigid"]:
+        """What kind of motion it is; `rigid` stays wherever it is put."""
+
+    @property
+    def frequency(self) -> float:
+        """Size of the eigenvalue over 2π [Hz]."""
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """Damping ratio; `None` of a rigid motion."""
+
+    @property
+    def eigenvalue(self) -> complex:
+        """The eigenvalue [1/s]; of a pair the one above the real axis."""
+
+    @property
+    def moves_most(self) -> str:
+        """Name of the position that moves most, as `theta.joint1`."""
+
+    @property
+    def shape(self) -> _Complexes:
+        """How far each position moves relative to the one that moves most, in the order of the states."""
+
+@final
+class FrequencyResponse:
+    """Response of a joint to its own motor; motor quantities are seen from the link side."""
+
+    @property
+    def joint(self) -> str:
+        """Name of the joint."""
+
+    @property
+    def frequency(self) -> _Vector:
+        """Frequencies [Hz]."""
+
+    @property
+    def motor(self) -> _Complexes:
+        """Motor position per motor torque at each frequency [rad/(N m), or m/N]."""
+
+    @property
+    def link(self) -> _Complexes:
+        """Link position per motor torque at each frequency [rad/(N m), or m/N]."""
+
+    @property
+    def resonances(self) -> _Vector:
+        """Frequencies of the peaks of the motor's response [Hz]."""
+
+    @property
+    def antiresonances(self) -> _Vector:
+        """Frequencies of the dips of the motor's response [Hz]."""
 
 @final
 class Robot:
@@ -100,6 +221,42 @@ class Robot:
 
     def placement(self, frame: str, q: ArrayLike) -> NDArray[np.float64]:
         """Pose of a link in the world, shape `(4, 4)`."""
+
+    def linearize(
+        self,
+        q: ArrayLike | None = None,
+        qd: ArrayLike | None = None,
+        theta: ArrayLike | None = None,
+        thetad: ArrayLike | None = None,
+        tau: ArrayLike | None = None,
+        *,
+        outputs: str | Sequence[str] | None = None,
+        model: _Model | None = None,
+        friction: _Friction = "all",
+    ) -> Linearization:
+        """Linear model about the equilibrium at `q`, about that under `tau`, or, with `qd`, about any state."""
+
+    def modes(
+        self,
+        q: ArrayLike | None = None,
+        *,
+        model: _Model | None = None,
+        friction: _Friction = "all",
+    ) -> list[Mode]:
+        """How the robot swings by itself about the equilibrium at a pose, from the slowest mode to the fastest."""
+
+    def frequency_response(
+        self,
+        joint: str,
+        q: ArrayLike | None = None,
+        *,
+        start: float | None = None,
+        stop: float | None = None,
+        points: int = 500,
+        model: _Model | None = None,
+        friction: _Friction = "all",
+    ) -> FrequencyResponse:
+        """From the torque of a joint's motor to the positions of motor and link, about the equilibrium at a pose."""
 
 def run_scenario(
     scenario: str | os.PathLike[str],

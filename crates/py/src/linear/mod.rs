@@ -1,0 +1,218 @@
+//! Linear models, modes and frequency responses of a robot.
+
+mod model;
+mod response;
+
+pub(crate) use model::{PyLinearization, PyMode};
+pub(crate) use response::PyFrequencyResponse;
+
+use crate::robot::PyRobot;
+use crate::{arguments, errors};
+use gyroflex_sim::Error;
+use gyroflex_sim::error::ErrorKind;
+use gyroflex_sim::linearize::{KeptFriction, Linearizer, OperatingPoint, Output, Sweep, frequency_response};
+use gyroflex_sim::simulate::StateVec;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+
+type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+#[pymethods]
+impl PyRobot {
+    /// Linear model `x' = A x + B u, y = C x + D u` about an operating point.
+    ///
+    /// The state `x` has the positions of the links, the positions of the motors behind elastic transmissions, and the
+    /// velocities of both; the input `u` the motor torques of the joints, seen from the link side; all are deviations from the
+    /// operating point. A floating root leads with six entries in its own frame, angular first, and has no input.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     Joint positions, shape `(nq,)` [rad or m]; zero if left out. Without `qd` the robot is at rest: where its motors
+    ///     hold it at `q`, or, if `tau` is given, at the pose at which `tau` holds it, looked for from `q` on.
+    /// qd, theta, thetad, tau
+    ///     With `qd`, any state and motor torques, as in `forward_dynamics`.
+    /// outputs
+    ///     What `y` is made of: `motor_position`, `motor_velocity`, `link_position`, `link_velocity`, `joint_torque` (all
+    ///     joints each), `pose:LINK` (position and rotation vector of a link's frame, world axes).
+    ///     By default motor and link positions.
+    /// model
+    ///     Which physics of the motors.
+    /// friction
+    ///     Which friction acts: `all`, `viscous` or `none`. Dry friction is steep at standstill and all but locks the joints.
+    #[pyo3(signature = (q=None, qd=None, theta=None, thetad=None, tau=None, *, outputs=None, model=None, friction="all"))]
+    #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
+    fn linearize<'py>(
+        &self,
+        py: Python<'py>,
+        q: Argument<'_, 'py>,
+        qd: Argument<'_, 'py>,
+        theta: Argument<'_, 'py>,
+        thetad: Argument<'_, 'py>,
+        tau: Argument<'_, 'py>,
+        outputs: Argument<'_, 'py>,
+        model: Option<&str>,
+        friction: &str,
+    ) -> PyResult<PyLinearization> {
+        let mut linearizer = self.linearizer(model, friction)?;
+        let outputs = read_outputs(outputs)?;
+        let q = self.start(&linearizer, q)?;
+        let point = match qd {
+            Some(qd) => Some(self.state(&linearizer, &q, qd, [theta, thetad, tau])?),
+            None => {
+                for (name, value) in [("theta", theta), ("thetad", thetad)] {
+                    if value.is_some() {
+                        return Err(errors::argument(
+                            name,
+                            "it is given, but `qd` is not",
+                            "give all of a moving state",
+                        ));
+                    }
+                }
+                None
+            }
+        };
+        let torques = match (&point, tau) {
+            (None, Some(tau)) => {
+                let mut torques = vec![0.0; self.layout.nv];
+                self.layout.forces("tau", tau, &mut torques)?;
+                Some(torques)
+            }
+            _ => None,
+        };
+        let linear = py.detach(|| {
+            let point = match (point, torques) {
+                (Some(point), _) => point,
+                (None, Some(tau)) => linearizer.equilibrium_for(&tau, &q)?,
+                (None, None) => linearizer.equilibrium_at(&q)?,
+            };
+            linearizer.linearize(&point, &outputs)
+        });
+        linear.map(PyLinearization::new).map_err(about("outputs"))
+    }
+
+    /// How the robot swings by itself about the equilibrium at a pose, from the slowest mode to the fastest.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     Joint positions, shape `(nq,)` [rad or m]; zero if left out.
+    /// model
+    ///     Which physics of the motors.
+    /// friction
+    ///     Which friction acts: `all`, `viscous` or `none`. Dry friction is steep at standstill and all but locks the joints.
+    #[pyo3(signature = (q=None, *, model=None, friction="all"))]
+    fn modes<'py>(
+        &self,
+        py: Python<'py>,
+        q: Argument<'_, 'py>,
+        model: Option<&str>,
+        friction: &str,
+    ) -> PyResult<Vec<PyMode>> {
+        self.linearize(py, q, None, None, None, None, None, model, friction)?.modes(py)
+    }
+
+    /// Response of a joint to its own motor about the equilibrium at a pose: from the motor's torque to the positions of motor
+    /// and link, over frequencies in equal ratios.
+    ///
+    /// Parameters
+    /// ----------
+    /// joint
+    ///     Name of the joint.
+    /// q
+    ///     Joint positions, shape `(nq,)` [rad or m]; zero if left out.
+    /// start, stop
+    ///     The first and the last frequency [Hz]; by default well below the slowest and well above the fastest mode.
+    /// points
+    ///     How many frequencies.
+    /// model
+    ///     Which physics of the motors.
+    /// friction
+    ///     Which friction acts: `all`, `viscous` or `none`. Dry friction is steep at standstill and all but locks the joints.
+    #[pyo3(signature = (joint, q=None, *, start=None, stop=None, points=500, model=None, friction="all"))]
+    #[expect(clippy::too_many_arguments, reason = "most of them may be left out")]
+    fn frequency_response<'py>(
+        &self,
+        py: Python<'py>,
+        joint: &str,
+        q: Argument<'_, 'py>,
+        start: Option<f64>,
+        stop: Option<f64>,
+        points: usize,
+        model: Option<&str>,
+        friction: &str,
+    ) -> PyResult<PyFrequencyResponse> {
+        let mut linearizer = self.linearizer(model, friction)?;
+        linearizer.layout().find(joint).map_err(about("joint"))?;
+        let q = self.start(&linearizer, q)?;
+        let sweep = Sweep { from: start, to: stop, points: Some(points) };
+        let response = py.detach(|| {
+            let point = linearizer.equilibrium_at(&q)?;
+            frequency_response(&linearizer, &point, joint, sweep)
+        });
+        response.map(PyFrequencyResponse::new).map_err(about("start, stop, points"))
+    }
+}
+
+impl PyRobot {
+    fn linearizer(&self, model: Option<&str>, friction: &str) -> PyResult<Linearizer> {
+        let fidelity = model.map_or(Ok(self.robot.fidelity), arguments::fidelity)?;
+        let kept = arguments::choice("friction", friction, &KeptFriction::NAMES)?;
+        Linearizer::new(&self.robot, fidelity, kept).map_err(errors::raise)
+    }
+
+    /// The positions given, or zero.
+    fn start(&self, linearizer: &Linearizer, q: Argument<'_, '_>) -> PyResult<Vec<f64>> {
+        let mut positions = linearizer.zero_position();
+        if let Some(q) = q {
+            self.layout.positions(q, &mut positions)?;
+        }
+        Ok(positions)
+    }
+
+    /// A state that moves, with its motor torques.
+    fn state(
+        &self,
+        linearizer: &Linearizer,
+        q: &[f64],
+        qd: &Bound<'_, PyAny>,
+        [theta, thetad, tau]: [Argument<'_, '_>; 3],
+    ) -> PyResult<OperatingPoint> {
+        let nv = self.layout.nv;
+        let elastic = !linearizer.layout().elastic().is_empty();
+        let mut state = StateVec { q: q.to_vec(), ..StateVec::zeros(0, nv) };
+        self.layout.velocities("qd", qd, &mut state.qd)?;
+        self.layout.motors("theta", theta, elastic, &mut state.theta)?;
+        self.layout.motors("thetad", thetad, elastic, &mut state.thetad)?;
+        let mut torques = vec![0.0; nv];
+        let Some(tau) = tau else {
+            return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
+        };
+        self.layout.forces("tau", tau, &mut torques)?;
+        linearizer.point(state, torques).map_err(errors::raise)
+    }
+}
+
+/// One name or several.
+fn read_outputs(value: Argument<'_, '_>) -> PyResult<Vec<Output>> {
+    let Some(value) = value else { return Ok(Output::defaults()) };
+    let names: Vec<String> = match value.cast::<PyString>() {
+        Ok(name) => vec![name.to_string()],
+        Err(_) => value.extract().map_err(|_| {
+            errors::argument(
+                "outputs",
+                "it is not a list of names",
+                "give names as `[\"motor_position\", \"pose:tool\"]`",
+            )
+        })?,
+    };
+    names.iter().map(|name| Output::parse(name)).collect::<Result<_, _>>().map_err(about("outputs"))
+}
+
+/// What an error of the library about its arguments is called here.
+fn about(argument: &'static str) -> impl Fn(Error) -> PyErr {
+    move |e| match e.kind {
+        ErrorKind::Shape => errors::argument(argument, e.problem, e.remedy),
+        _ => errors::raise(e),
+    }
+}
