@@ -75,8 +75,14 @@ pub(super) fn compare(robot: &Robot, motions: &[Motion], options: &Options) -> R
     let joints = coordinates.joints.iter().enumerate().map(|(i, joint)| {
         let [tau_j, tau] = tallies[i].map(|t| t.side(samples));
         let slides = robot.joints[joint.body].urdf_type == "prismatic";
-        let mut report =
-            JointReport { name: joint.name.clone(), slides, top_speed: speeds[i], tau_j, tau, ..JointReport::default() };
+        let mut report = JointReport {
+            name: joint.name.clone(),
+            slides,
+            top_speed: speeds[i],
+            tau_j,
+            tau,
+            ..JointReport::default()
+        };
         // The error grows with the square of the speed.
         let share = (options.threshold / report.worst_percent()).sqrt();
         report.threshold_speed = (share < 1.0).then_some(share * speeds[i]);
@@ -97,7 +103,9 @@ pub(super) fn compare(robot: &Robot, motions: &[Motion], options: &Options) -> R
     };
     judge(&mut report);
     if robot.bodies.iter().all(|b| b.drive.is_none()) {
-        report.notes.push("the robot has no drives, so there are no rotors that could matter; give them in a robot YAML".to_owned());
+        report.notes.push(
+            "the robot has no drives, so there are no rotors that could matter; give them in a robot YAML".to_owned(),
+        );
     }
     Ok(report)
 }

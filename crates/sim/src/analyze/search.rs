@@ -35,11 +35,7 @@ pub(super) fn largest<E>(
 }
 
 /// Steps along one coordinate at a time while that leads uphill, else halves the step.
-fn climb<E>(
-    found: &mut Found,
-    bounds: &[[f64; 2]],
-    f: &mut dyn FnMut(&[f64]) -> Result<f64, E>,
-) -> Result<(), E> {
+fn climb<E>(found: &mut Found, bounds: &[[f64; 2]], f: &mut dyn FnMut(&[f64]) -> Result<f64, E>) -> Result<(), E> {
     let mut step = STEPS[0];
     while step > STEPS[1] {
         let mut better = false;

@@ -7,7 +7,11 @@ use std::fmt;
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of = self.file.as_ref().map_or_else(|| self.of.clone(), |file| format!("{} {file}", self.of));
-        writeln!(f, "{}: complete model beside the reduced one over {} instants of the {of}\n", self.robot, self.samples)?;
+        writeln!(
+            f,
+            "{}: complete model beside the reduced one over {} instants of the {of}\n",
+            self.robot, self.samples
+        )?;
         let widest = self.joints.iter().map(|j| j.name.chars().count()).max().unwrap_or(0).max("joint".len());
         let side = |name: &str| format!("{:^36}", format!("{name}: torque and the reduced model's error"));
         writeln!(f, "  {:widest$}  {:>11}  {}  {}", "", "", side("tau_J"), side("tau").trim_end())?;

@@ -10,10 +10,10 @@ mod layout;
 mod output;
 mod wrench;
 
+pub use crate::analyze::{Significance, significance};
 pub use input::{Query, Wrench, WrenchAxes};
 pub use layout::unit_quaternion;
 pub use output::{Answer, EnergyAnswer, VelocityMatrices};
-pub use crate::analyze::{Significance, significance};
 
 use crate::Dynamics;
 use crate::error::Error;
