@@ -80,10 +80,12 @@ pub(super) fn notes(robot: &Robot, ranges: &[Range], options: &Options) -> Vec<S
     let mut notes = Vec::new();
     let silent = named(&|r| !r.speed_given);
     if !silent.is_empty() {
-        let [turn, slide] = [SPEEDS[0].to_degrees(), SPEEDS[1]];
+        let taken = |slides: bool| ranges.iter().any(|r| r.slides == slides && !r.speed_given);
+        let turn = taken(false).then(|| format!("{:.0} deg/s", SPEEDS[0].to_degrees()));
+        let slide = taken(true).then(|| format!("{} m/s", SPEEDS[1]));
+        let taken = turn.into_iter().chain(slide).collect::<Vec<_>>().join(" and ");
         notes.push(format!(
-            "no speed limit is given for {silent}: {turn:.0} deg/s, {slide} m/s for sliding joints, are taken; choose with --speed or \
-             the URDF's <limit velocity>"
+            "no speed limit is given for {silent}, {taken} is taken; choose with --speed or the URDF's <limit velocity>"
         ));
     }
     let sliding = named(&|r| r.slides);
