@@ -12,7 +12,8 @@ fn half_a_second(pace: f64) -> Conditions {
 fn only_the_complete_simulator_shows_what_the_reduced_feedforward_leaves_out() {
     let c = compare(half_a_second(2.0)).expect("the robot is physical");
     assert!(c.max(1) < 1e-6, "the reduced simulator is off by {} m under its own inverse", c.max(1));
-    assert!(c.max(0) > 20.0 * c.max(1), "{} {}", c.max(0), c.max(1));
+    assert!(c.max(0) > 20.0 * c.max(1) && c.rms(0) > 20.0 * c.rms(1), "{} {}", c.max(0), c.max(1));
+    assert!(c.largest_ratio() > 0.0);
 }
 
 #[test]
