@@ -1,8 +1,10 @@
 //! What the command line may say.
 
+mod analyze;
 mod bench;
 mod linear;
 
+pub use analyze::Analyze;
 pub use bench::Bench;
 pub use linear::{Frf, Linearize, Modes, Pose};
 
@@ -39,6 +41,7 @@ pub enum Command {
     Linearize(Linearize),
     Modes(Modes),
     Frf(Frf),
+    Analyze(Analyze),
     Bench(Bench),
     Export(Export),
     Schema(Schema),
@@ -238,5 +241,14 @@ fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
         _ => Err("give a number of seconds above zero".to_owned()),
+    }
+}
+
+/// A file for a picture.
+fn picture(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("svg" | "png") => Ok(path),
+        _ => Err("give a file that ends in .svg or .png".to_owned()),
     }
 }

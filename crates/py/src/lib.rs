@@ -1,5 +1,6 @@
 //! The Python module `gyroflex._gyroflex`: arrays in, arrays out, no physics of its own.
 
+mod analyze;
 mod arguments;
 mod arrays;
 mod errors;

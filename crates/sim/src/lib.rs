@@ -1,5 +1,6 @@
 //! From files to motion: URDF and YAML in, simulation, records out.
 
+pub mod analyze;
 pub mod batch;
 pub mod bench;
 pub mod controller;
@@ -15,6 +16,7 @@ pub mod load;
 pub mod loads;
 pub mod modes;
 mod ode;
+mod random;
 pub mod record;
 pub mod reference;
 pub mod robot;

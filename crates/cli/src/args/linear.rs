@@ -1,6 +1,6 @@
 //! What the commands about linear models may be told.
 
-use super::{ModelName, seconds};
+use super::{ModelName, picture, seconds};
 use clap::{Args, ValueEnum};
 use gyroflex_sim::linearize::KeptFriction;
 use std::path::PathBuf;
@@ -147,13 +147,5 @@ fn hertz(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
         _ => Err("give a frequency in Hz above zero".to_owned()),
-    }
-}
-
-fn picture(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    match path.extension().and_then(|e| e.to_str()) {
-        Some("svg" | "png") => Ok(path),
-        _ => Err("give a file that ends in .svg or .png".to_owned()),
     }
 }

@@ -1,10 +1,12 @@
 //! Pictures of results, as SVG or PNG.
 
+mod analyze;
 mod canvas;
 mod modes;
 mod panel;
 mod response;
 
+pub use analyze::analysis;
 pub use modes::modes;
 pub use response::response;
 

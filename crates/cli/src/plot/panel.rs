@@ -36,6 +36,15 @@ impl Axis {
         Self { ends, logarithmic: true, ticks: ticks.collect(), label: label.to_owned() }
     }
 
+    /// An axis of equal steps, with ticks at round numbers.
+    pub(super) fn linear(ends: [f64; 2], label: &str) -> Self {
+        let rough = ((ends[1] - ends[0]) / 6.0).max(f64::MIN_POSITIVE);
+        let power = 10_f64.powf(rough.log10().floor());
+        let step = power * [1.0, 2.0, 5.0].into_iter().find(|s| s * power >= rough).unwrap_or(10.0);
+        let ticks = (0..20).map(|i| ((ends[0] / step).ceil() + f64::from(i)) * step).filter(|x| *x <= ends[1]);
+        Self { ends, logarithmic: false, ticks: ticks.map(|x| (x, short(x))).collect(), label: label.to_owned() }
+    }
+
     /// Where a value lies, 0 to 1.
     fn share(&self, x: f64) -> f64 {
         let [a, b] = self.ends;
@@ -104,5 +113,5 @@ impl Panel {
 
 /// A tick in few letters.
 fn short(x: f64) -> String {
-    if (1e-3..1e5).contains(&x) { format!("{}", (x * 1e6).round() / 1e6) } else { format!("{x:.0e}") }
+    if x == 0.0 || (1e-3..1e5).contains(&x) { format!("{}", (x * 1e6).round() / 1e6) } else { format!("{x:.0e}") }
 }

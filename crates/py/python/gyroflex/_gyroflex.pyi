@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from typing import Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -257,6 +257,20 @@ class Robot:
         friction: _Friction = "all",
     ) -> FrequencyResponse:
         """From the torque of a joint's motor to the positions of motor and link, about the equilibrium at a pose."""
+
+    def analyze(
+        self,
+        *,
+        scenario: str | os.PathLike[str] | None = None,
+        log: str | os.PathLike[str] | None = None,
+        samples: int = 2000,
+        seed: int = 0,
+        speed: float | None = None,
+        rise: float = 0.25,
+        threshold: float = 1.0,
+        bounds: bool = False,
+    ) -> dict[str, Any]:
+        """When do the rotors matter: torque errors of the reduced model, as `gyroflex analyze --json` prints them."""
 
 def run_scenario(
     scenario: str | os.PathLike[str],

@@ -1,6 +1,7 @@
 //! Random states inside a robot's limits.
 
 use crate::coordinates::Coordinates;
+use crate::random::Random;
 use crate::robot::Robot;
 use std::f64::consts::PI;
 
@@ -29,7 +30,7 @@ pub(super) struct Point {
 
 /// Always the same ones of a robot.
 pub(super) fn random(robot: &Robot) -> Vec<Point> {
-    let mut random = Random(0);
+    let mut random = Random::new(0);
     (0..STATES).map(|_| point(robot, &mut random)).collect()
 }
 
@@ -64,32 +65,6 @@ fn point(robot: &Robot, random: &mut Random) -> Point {
         p.qdd[c.v] = random.within(ACCELERATION);
     }
     p
-}
-
-/// SplitMix64 (Steele, Lea, Flood 2014): small, and good enough to scatter states.
-struct Random(u64);
-
-impl Random {
-    /// Evenly from `-half` to `half`.
-    fn within(&mut self, half: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        half * ((z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
-    }
-
-    /// A unit quaternion, evenly over all rotations: a point of the cube that lies in the ball, scaled to the sphere.
-    fn rotation(&mut self) -> [f64; 4] {
-        loop {
-            let q: [f64; 4] = std::array::from_fn(|_| self.within(1.0));
-            let square: f64 = q.iter().map(|x| x * x).sum();
-            if (1e-3..=1.0).contains(&square) {
-                return q.map(|x| x / square.sqrt());
-            }
-        }
-    }
 }
 
 #[cfg(test)]

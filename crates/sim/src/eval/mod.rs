@@ -8,13 +8,12 @@ mod input;
 mod json;
 mod layout;
 mod output;
-mod significance;
 mod wrench;
 
+pub use crate::analyze::{Significance, significance};
 pub use input::{Query, Wrench, WrenchAxes};
 pub use layout::unit_quaternion;
 pub use output::{Answer, EnergyAnswer, VelocityMatrices};
-pub use significance::{Significance, significance};
 
 use crate::Dynamics;
 use crate::error::Error;

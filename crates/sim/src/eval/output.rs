@@ -1,8 +1,8 @@
 //! The answer to one query.
 
 use super::layout::{Arrays, Layout};
-use super::significance::Significance;
 use crate::Dynamics;
+use crate::analyze::Significance;
 use crate::error::{Error, ErrorKind};
 use gyroflex::dynamics::{CoriolisMatrices, Energy, InertiaRates, State};
 use serde::Serialize;
@@ -154,7 +154,7 @@ fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-pub(super) fn not_finite(element: &str, key: &str) -> Error {
+fn not_finite(element: &str, key: &str) -> Error {
     Error {
         kind: ErrorKind::Diverged,
         file: String::new(),

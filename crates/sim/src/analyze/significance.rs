@@ -1,8 +1,7 @@
 //! How much the gyroscopic coupling of rotors and links matters (Zhao et al. 2015, eq. 12 and the bounds below it).
 
-use super::output::not_finite;
 use crate::Dynamics;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
@@ -73,6 +72,16 @@ pub fn significance(dynamics: &mut Dynamics, q: &[f64], qd: Option<&[f64]>) -> R
         sigma_s,
         sigma_m_l,
     })
+}
+
+fn not_finite(element: &str, key: &str) -> Error {
+    Error {
+        kind: ErrorKind::Diverged,
+        file: String::new(),
+        element: element.to_owned(),
+        problem: format!("the result `{key}` is not a finite number"),
+        remedy: "check the size of the numbers given, and that the links beyond the joint have inertia".to_owned(),
+    }
 }
 
 fn descending(m: DMatrix<f64>) -> Vec<f64> {

@@ -1,0 +1,78 @@
+//! When do the rotors matter: what `gyroflex analyze` finds, as a dictionary.
+
+use crate::errors;
+use crate::robot::PyRobot;
+use crate::simulate::SIGNAL_INTERVAL;
+use gyroflex_sim::ScenarioFile;
+use gyroflex_sim::analyze::{Options, of_log, of_scenario, of_workspace};
+use gyroflex_sim::load::Disk;
+use pyo3::prelude::*;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::Instant;
+
+#[pymethods]
+impl PyRobot {
+    /// When do the rotors matter? Torque errors of the reduced model beside the complete one, joint by joint.
+    ///
+    /// Without a scenario or a log, quasi-random motions over the joint limits are analysed.
+    ///
+    /// Parameters
+    /// ----------
+    /// scenario
+    ///     Simulate this scenario with the complete model and analyse its motion.
+    /// log
+    ///     Analyse the motion in an MCAP log of a simulation.
+    /// samples, seed
+    ///     How many motions are drawn from the workspace, and which.
+    /// speed
+    ///     Top speed of all turning joints [rad/s]; by default each joint's own limit.
+    /// rise
+    ///     Time in which a joint comes from rest to its top speed [s].
+    /// threshold
+    ///     How large an error may be [% of the joint's peak torque].
+    /// bounds
+    ///     Whether to look for bounds of the inertia matrix, of Coriolis and of gravity torques over the joint limits.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     What `gyroflex analyze --json` prints; SI units, angles in radians.
+    #[pyo3(signature = (*, scenario=None, log=None, samples=2000, seed=0, speed=None, rise=0.25, threshold=1.0, bounds=false))]
+    #[expect(clippy::too_many_arguments, reason = "most of them may be left out")]
+    fn analyze<'py>(
+        &self,
+        py: Python<'py>,
+        scenario: Option<PathBuf>,
+        log: Option<PathBuf>,
+        samples: usize,
+        seed: u64,
+        speed: Option<f64>,
+        rise: f64,
+        threshold: f64,
+        bounds: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let options = Options { samples, seed, speed, rise, threshold, bounds };
+        let mut signal = Ok(());
+        let report = py.detach(|| match (&scenario, &log) {
+            (Some(_), Some(_)) => Err(errors::argument("log", "there is a scenario too", "give one of the two")),
+            (Some(path), None) => {
+                let mut looked = Instant::now();
+                let mut progress = |_| {
+                    if looked.elapsed() >= SIGNAL_INTERVAL {
+                        looked = Instant::now();
+                        signal = Python::attach(|py| py.check_signals());
+                    }
+                    if signal.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+                };
+                let file = ScenarioFile::load(&Disk, path).map_err(errors::raise)?;
+                of_scenario(&self.robot, &file, &options, &mut progress).map_err(errors::raise)
+            }
+            (None, Some(path)) => of_log(&self.robot, path, &options).map_err(errors::raise),
+            (None, None) => of_workspace(&self.robot, &options).map_err(errors::raise),
+        });
+        signal?;
+        let text = report?.to_json().map_err(errors::raise)?;
+        py.import("json")?.call_method1("loads", (text,))
+    }
+}
