@@ -2,8 +2,9 @@
 //! Arrays out: new ones, checked too.
 
 use crate::errors;
+use numpy::ndarray::{Dim, Dimension, IntoDimension};
 use numpy::{
-    Complex64, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods,
+    Complex64, PyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyString;
@@ -102,6 +103,21 @@ pub(crate) fn vector<'py>(py: Python<'py>, name: &str, numbers: &[f64]) -> PyRes
 pub(crate) fn matrix<'py>(py: Python<'py>, name: &str, numbers: &[f64], n: usize) -> PyResult<Matrix<'py>> {
     check_result(name, numbers)?;
     PyArray1::from_slice(py, numbers).reshape([n, n])
+}
+
+/// A result of any shape, its last axis running fastest.
+pub(crate) fn shaped<'py, const D: usize>(
+    py: Python<'py>,
+    name: &str,
+    numbers: &[f64],
+    shape: [usize; D],
+) -> PyResult<Bound<'py, PyArray<f64, Dim<[usize; D]>>>>
+where
+    Dim<[usize; D]>: Dimension,
+    [usize; D]: IntoDimension<Dim = Dim<[usize; D]>>,
+{
+    check_result(name, numbers)?;
+    PyArray1::from_slice(py, numbers).reshape(shape)
 }
 
 /// A matrix from its rows, of so many columns.

@@ -3,8 +3,11 @@
 mod analyze;
 mod arguments;
 mod arrays;
+mod derivatives;
 mod errors;
 mod linear;
+mod matrices;
+mod operational;
 mod robot;
 mod simulate;
 mod workspace;

@@ -8,6 +8,7 @@ use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex_sim::Robot;
 use gyroflex_sim::load::nearest::nearest;
 use gyroflex_sim::load::{LoadOptions, load};
+use gyroflex_sim::robot::Link;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -262,12 +263,7 @@ impl PyRobot {
     /// q
     ///     Joint positions, shape `(nq,)` [rad or m].
     fn placement<'py>(&self, py: Python<'py>, frame: &str, q: &Bound<'py, PyAny>) -> PyResult<Matrix<'py>> {
-        let links = &self.robot.links;
-        let Some(link) = links.iter().find(|l| l.name == frame) else {
-            let near = nearest(frame, links.iter().map(|l| l.name.as_str())).unwrap_or_default();
-            let problem = format!("the robot has no link `{frame}`");
-            return Err(errors::argument("frame", problem, format!("the nearest known one is `{near}`")));
-        };
+        let link = self.link(frame)?;
         self.with(None, |w| {
             self.layout.positions(q, &mut w.q)?;
             w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
@@ -291,7 +287,17 @@ impl PyRobot {
         self.robot.joints.iter().skip(usize::from(self.floating()))
     }
 
-    fn with<R>(&self, model: Option<&str>, call: impl FnOnce(&mut Workspace) -> PyResult<R>) -> PyResult<R> {
+    /// The link of that name.
+    pub(crate) fn link(&self, frame: &str) -> PyResult<&Link> {
+        let links = &self.robot.links;
+        links.iter().find(|l| l.name == frame).ok_or_else(|| {
+            let near = nearest(frame, links.iter().map(|l| l.name.as_str())).unwrap_or_default();
+            let problem = format!("the robot has no link `{frame}`");
+            errors::argument("frame", problem, format!("the nearest known one is `{near}`"))
+        })
+    }
+
+    pub(crate) fn with<R>(&self, model: Option<&str>, call: impl FnOnce(&mut Workspace) -> PyResult<R>) -> PyResult<R> {
         let fidelity = model.map_or(Ok(self.robot.fidelity), arguments::fidelity)?;
         self.pool.with(&self.robot, fidelity, call)
     }

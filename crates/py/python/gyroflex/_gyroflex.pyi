@@ -16,6 +16,8 @@ __version__: str
 _Model: TypeAlias = Literal["complete", "reduced", "rigid", "rigid_reflected"]
 _Friction: TypeAlias = Literal["all", "viscous", "none"]
 _Vector: TypeAlias = NDArray[np.float64]
+_Matrix: TypeAlias = NDArray[np.float64]
+_Blocks: TypeAlias = NDArray[np.float64]
 _Complexes: TypeAlias = NDArray[np.complex128]
 
 @final
@@ -221,6 +223,82 @@ class Robot:
 
     def placement(self, frame: str, q: ArrayLike) -> NDArray[np.float64]:
         """Pose of a link in the world, shape `(4, 4)`."""
+
+    def coriolis_matrices(
+        self, q: ArrayLike, qd: ArrayLike, thetad: ArrayLike | None = None, *, model: _Model | None = None
+    ) -> tuple[_Matrix, _Matrix, _Matrix]:
+        """Blocks `(C, C1, C2)` of the Coriolis matrix in Christoffel form, shape `(nv, nv)` each."""
+
+    def inertia_rates(
+        self, q: ArrayLike, qd: ArrayLike, *, model: _Model | None = None
+    ) -> tuple[_Matrix, _Matrix]:
+        """Time derivatives of `mass_matrix` and `coupling_matrix` along a motion, shape `(nv, nv)` each."""
+
+    def bias(
+        self, q: ArrayLike, qd: ArrayLike, thetad: ArrayLike | None = None, *, model: _Model | None = None
+    ) -> tuple[_Vector, _Vector]:
+        """What links and motors need at zero acceleration, beside friction, springs and loads, shape `(nv,)` each."""
+
+    def gravity_torques(self, q: ArrayLike) -> _Vector:
+        """Generalised forces that hold the links against gravity, shape `(nv,)`."""
+
+    def forward_derivatives(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        theta: ArrayLike | None = None,
+        thetad: ArrayLike | None = None,
+        tau: ArrayLike | None = None,
+        *,
+        model: _Model | None = None,
+        tau_ext: ArrayLike | None = None,
+    ) -> tuple[_Blocks, _Blocks]:
+        """Derivatives of `qdd` and `thetadd` by `q, qd, theta, thetad, tau`, shape `(5, nv, nv)` each."""
+
+    def inverse_derivatives(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        qdd: ArrayLike,
+        theta: ArrayLike | None = None,
+        thetad: ArrayLike | None = None,
+        thetadd: ArrayLike | None = None,
+        *,
+        model: _Model | None = None,
+        tau_ext: ArrayLike | None = None,
+    ) -> tuple[_Blocks, _Blocks]:
+        """Derivatives of `tau_j` and `tau` by `q, qd, qdd, theta, thetad, thetadd`, shape `(6, nv, nv)` each."""
+
+    def regressor(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        qdd: ArrayLike,
+        theta: ArrayLike | None = None,
+        thetad: ArrayLike | None = None,
+        thetadd: ArrayLike | None = None,
+        *,
+        model: _Model | None = None,
+    ) -> tuple[_Matrix, _Matrix, _Matrix]:
+        """Matrices of links, transmissions and motors that `parameters` enter linearly, shape `(nv, 20 bodies)` each."""
+
+    def parameters(self, *, model: _Model | None = None) -> _Vector:
+        """The parameters that `regressor` belongs to, twenty for each body."""
+
+    def operational_space(
+        self,
+        frame: str,
+        q: ArrayLike,
+        qd: ArrayLike,
+        thetad: ArrayLike | None = None,
+        *,
+        directions: list[Literal["rx", "ry", "rz", "x", "y", "z"]] | None = None,
+        rotation: Literal["geometric", "rpy", "zyz"] = "geometric",
+        point: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        threshold: float = 1e-6,
+        model: _Model | None = None,
+    ) -> dict[str, Any]:
+        """The dynamics that a link feels: Jacobian, inertia, consistent inverse, velocity and gravity forces, singular values."""
 
     def linearize(
         self,

@@ -1,0 +1,145 @@
+//! Matrices and forces of the equations of motion that belong to velocity and gravity.
+
+use crate::arrays::{Matrix, Vector, matrix, vector};
+use crate::errors;
+use crate::robot::PyRobot;
+use crate::workspace::Workspace;
+use gyroflex::dynamics::{Bias, CoriolisMatrices, InertiaRates, State};
+use pyo3::prelude::*;
+
+#[pymethods]
+impl PyRobot {
+    /// Blocks of the Coriolis matrix in Christoffel form, `[C, C1; C2, 0]` over joints and motors.
+    ///
+    /// Parameters
+    /// ----------
+    /// q, qd
+    ///     Joint positions, shape `(nq,)`, and velocities, shape `(nv,)` [rad or m, per s].
+    /// thetad
+    ///     Motor velocities seen from the link side, shape `(nv,)`. Needed if the model has elastic joints.
+    /// model
+    ///     Which physics of the motors.
+    ///
+    /// Returns
+    /// -------
+    /// (C, C1, C2)
+    ///     Links by links, links by motors, motors by links, shape `(nv, nv)` [kg m²/s]; with the rate of the whole inertia matrix
+    ///     they are skew: `d/dt [M, S; Sᵀ, B] = [C, C1; C2, 0] + [C, C1; C2, 0]ᵀ`.
+    #[pyo3(signature = (q, qd, thetad=None, *, model=None))]
+    fn coriolis_matrices<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        thetad: Option<&Bound<'py, PyAny>>,
+        model: Option<&str>,
+    ) -> PyResult<(Matrix<'py>, Matrix<'py>, Matrix<'py>)> {
+        let nv = self.layout.nv;
+        self.with(model, |w| {
+            self.motion(w, q, qd, thetad)?;
+            let [mut c, mut c1, mut c2] = [(); 3].map(|()| vec![0.0; nv * nv]);
+            let Workspace { dynamics, q, qd, theta, thetad, .. } = w;
+            let out = CoriolisMatrices { c: &mut c, c1: &mut c1, c2: &mut c2 };
+            dynamics.coriolis_matrices(State { q, qd, theta, thetad }, out).map_err(errors::raise)?;
+            Ok((matrix(py, "C", &c, nv)?, matrix(py, "C1", &c1, nv)?, matrix(py, "C2", &c2, nv)?))
+        })
+    }
+
+    /// Time derivatives of inertia matrix and coupling along a motion.
+    ///
+    /// Parameters
+    /// ----------
+    /// q, qd
+    ///     Joint positions, shape `(nq,)`, and velocities, shape `(nv,)` [rad or m, per s].
+    /// model
+    ///     Which physics of the motors.
+    ///
+    /// Returns
+    /// -------
+    /// (dM, dS)
+    ///     Shape `(nv, nv)` [kg m²/s].
+    #[pyo3(signature = (q, qd, *, model=None))]
+    fn inertia_rates<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        model: Option<&str>,
+    ) -> PyResult<(Matrix<'py>, Matrix<'py>)> {
+        let nv = self.layout.nv;
+        self.with(model, |w| {
+            self.layout.positions(q, &mut w.q)?;
+            self.layout.velocities("qd", qd, &mut w.qd)?;
+            w.theta.fill(0.0);
+            w.thetad.fill(0.0);
+            let [mut m, mut s] = [(); 2].map(|()| vec![0.0; nv * nv]);
+            let Workspace { dynamics, q, qd, theta, thetad, .. } = w;
+            let out = InertiaRates { m: &mut m, s: &mut s };
+            dynamics.inertia_rates(State { q, qd, theta, thetad }, out).map_err(errors::raise)?;
+            Ok((matrix(py, "dM", &m, nv)?, matrix(py, "dS", &s, nv)?))
+        })
+    }
+
+    /// What a motion without accelerations asks for, beside friction, springs and loads.
+    ///
+    /// Parameters
+    /// ----------
+    /// q, qd
+    ///     Joint positions, shape `(nq,)`, and velocities, shape `(nv,)` [rad or m, per s].
+    /// thetad
+    ///     Motor velocities seen from the link side, shape `(nv,)`. Needed if the model has elastic joints.
+    /// model
+    ///     Which physics of the motors.
+    ///
+    /// Returns
+    /// -------
+    /// (link, motor)
+    ///     `C q̇ + C₁ θ̇ + g` and `C₂ q̇`, shape `(nv,)` [N m or N].
+    #[pyo3(signature = (q, qd, thetad=None, *, model=None))]
+    fn bias<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        thetad: Option<&Bound<'py, PyAny>>,
+        model: Option<&str>,
+    ) -> PyResult<(Vector<'py>, Vector<'py>)> {
+        self.with(model, |w| {
+            self.motion(w, q, qd, thetad)?;
+            let Workspace { dynamics, q, qd, theta, thetad, out: [link, motor, _], .. } = w;
+            dynamics.bias(State { q, qd, theta, thetad }, Bias { link, motor }).map_err(errors::raise)?;
+            Ok((vector(py, "link", link)?, vector(py, "motor", motor)?))
+        })
+    }
+
+    /// Generalised forces that hold the links against gravity, shape `(nv,)` [N m or N].
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     Joint positions, shape `(nq,)` [rad or m].
+    fn gravity_torques<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Vector<'py>> {
+        self.with(None, |w| {
+            self.layout.positions(q, &mut w.q)?;
+            let Workspace { dynamics, q, out: [g, ..], .. } = w;
+            dynamics.gravity_torques(q, g).map_err(errors::raise)?;
+            vector(py, "gravity torques", g)
+        })
+    }
+}
+
+impl PyRobot {
+    /// A state of which the motors' positions do not count.
+    pub(crate) fn motion(
+        &self,
+        w: &mut Workspace,
+        q: &Bound<'_, PyAny>,
+        qd: &Bound<'_, PyAny>,
+        thetad: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        self.layout.positions(q, &mut w.q)?;
+        self.layout.velocities("qd", qd, &mut w.qd)?;
+        w.theta.fill(0.0);
+        self.layout.motors("thetad", thetad, w.elastic, &mut w.thetad)
+    }
+}
