@@ -35,13 +35,13 @@ pub struct Analyze {
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
     /// Top speed of all turning joints [default: each joint's own limit]
-    #[arg(long, value_name = "DEG_PER_S", value_parser = positive)]
+    #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = positive)]
     pub speed: Option<f64>,
     /// Time in which a joint comes from rest to its top speed: the largest acceleration is the speed over this [default: 0.25]
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = positive)]
     pub rise: Option<f64>,
     /// How large an error may be in % of the joint's peak torque
-    #[arg(long, value_name = "PERCENT", default_value_t = 1.0, value_parser = positive)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 1.0, allow_negative_numbers = true, value_parser = positive)]
     pub threshold: f64,
     /// Add bounds of the inertia matrix, of Coriolis and of gravity torques over the joint limits
     #[arg(long)]
