@@ -89,11 +89,14 @@ impl Moving {
     }
 }
 
+/// The name of a block of columns, and the motion that moves along one of its coordinates.
+type Block = (&'static str, fn(Moving, usize) -> Moving);
+
 /// Asserts that every block of `nv` columns of a matrix of slopes is what automatic differentiation gives column by column.
 fn assert_blocks(
     t: &Trial<'_, f64>,
     names: [&str; 2],
-    blocks: &[(&str, fn(Moving, usize) -> Moving)],
+    blocks: &[Block],
     got: [&[f64]; 2],
     slopes: impl Fn(&Moving) -> [Vec<f64>; 2],
 ) {
@@ -133,7 +136,7 @@ fn forward(t: &Trial<'_, f64>) {
     t.assert_close("qdd", &qdd, &want.qdd, 0.0);
     t.assert_close("thetadd", &thetadd, &want.thetadd, 0.0);
     t.assert_close("tau_j", &tau_j, &want.tau_j, 0.0);
-    let blocks: [(&str, fn(Moving, usize) -> Moving); 5] = [
+    let blocks: [Block; 5] = [
         ("q", Moving::position),
         ("qd", |mut m, k| {
             along(&mut m.qd, k);
@@ -166,7 +169,7 @@ fn inverse(t: &Trial<'_, f64>) {
     let [mut tau_j, mut tau] = [(); 2].map(|()| vec![f64::NAN; 6 * nv * nv]);
     let out = InverseDerivatives { tau_j: &mut tau_j, tau: &mut tau };
     inverse_derivatives(&model, state, accel, ext, &mut scratch, out).expect("slices fit");
-    let blocks: [(&str, fn(Moving, usize) -> Moving); 6] = [
+    let blocks: [Block; 6] = [
         ("q", Moving::position),
         ("qd", |mut m, k| {
             along(&mut m.qd, k);
