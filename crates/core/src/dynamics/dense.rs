@@ -148,7 +148,11 @@ fn put<T: Scalar, F: Over<T>, const R: usize, const N: usize>(
 
 #[inline(always)]
 fn plus_scaled<F: Scalar, const N: usize>(sum: [F; N], s: F, x: [F; N]) -> [F; N] {
-    core::array::from_fn(|i| s.mul_add(x[i], sum[i]))
+    let mut out = sum;
+    for i in 0..N {
+        out[i] = s.mul_add(x[i], sum[i]);
+    }
+    out
 }
 
 #[inline(always)]
