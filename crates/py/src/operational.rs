@@ -27,7 +27,7 @@ impl PyRobot {
     /// rotation
     ///     What `rx`, `ry`, `rz` are: `geometric` for the angular velocity, `rpy` or `zyz` for rates of these angles.
     /// point
-    ///     Reference point in the link's frame [m].
+    ///     Reference point in the link's frame [m]; by default its origin.
     /// threshold
     ///     Directions in which the frame accelerates less than this part of the most count as ones in which it cannot move.
     /// model
@@ -39,7 +39,7 @@ impl PyRobot {
     ///     With `m` directions: `jacobian` `(m, nv)`, `bias_acceleration` `J̇ q̇` `(m,)`, `inertia` `Λ` `(m, m)`, `inverse` `J̄`
     ///     `(nv, m)`, `velocity_force` `μ` and `gravity_force` `p` `(m,)`, and the singular values `smallest`, `largest` of the Jacobian and
     ///     `representation`, the smallest of the angles' rates.
-    #[pyo3(signature = (frame, q, qd, thetad=None, *, directions=None, rotation="geometric", point=[0.0; 3], threshold=1e-6, model=None))]
+    #[pyo3(signature = (frame, q, qd, thetad=None, *, directions=None, rotation="geometric", point=None, threshold=1e-6, model=None))]
     #[expect(clippy::too_many_arguments, reason = "most of them may be left out")]
     fn operational_space<'py>(
         &self,
@@ -50,7 +50,7 @@ impl PyRobot {
         thetad: Option<&Bound<'py, PyAny>>,
         directions: Option<Vec<String>>,
         rotation: &str,
-        point: [f64; 3],
+        point: Option<[f64; 3]>,
         threshold: f64,
         model: Option<&str>,
     ) -> PyResult<Bound<'py, PyDict>> {
@@ -64,6 +64,7 @@ impl PyRobot {
         };
         let known = [("geometric", Rotation::Geometric), ("rpy", Rotation::RollPitchYaw), ("zyz", Rotation::Zyz)];
         let rotation = arguments::choice("rotation", rotation, &known)?;
+        let point = point.unwrap_or_default();
         if !(point.iter().all(|x| x.is_finite()) && (0.0..1.0).contains(&threshold)) {
             let problem = "it is not a finite point, or `threshold` is not from 0 to 1";
             return Err(errors::argument("point", problem, "give three finite coordinates and a small threshold"));

@@ -294,7 +294,7 @@ class Robot:
         *,
         directions: list[Literal["rx", "ry", "rz", "x", "y", "z"]] | None = None,
         rotation: Literal["geometric", "rpy", "zyz"] = "geometric",
-        point: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        point: tuple[float, float, float] | None = None,
         threshold: float = 1e-6,
         model: _Model | None = None,
     ) -> dict[str, Any]:
