@@ -37,13 +37,14 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 fn panel(area: &Area<'_>, label: &str, time: &[f64], lines: &[(&str, RGBColor, Vec<f64>)]) -> Result<(), Failed> {
     let all = || lines.iter().flat_map(|(.., y)| y.iter().copied());
     let (low, high) = (all().fold(0.0, f64::min), all().fold(1e-12, f64::max));
-    let room = 0.05 * (high - low);
+    // Above the lines, the names have a place of their own.
+    let (room, head) = (0.05 * (high - low), 0.15 * (1 + lines.len()) as f64 * (high - low));
     let end = time.last().copied().unwrap_or(1.0);
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .x_label_area_size(40)
         .y_label_area_size(70)
-        .build_cartesian_2d(0.0..end, low - room..high + room)
+        .build_cartesian_2d(0.0..end, low - room..high + head)
         .map_err(why)?;
     chart
         .configure_mesh()
