@@ -32,7 +32,7 @@ impl PyRobot {
     /// threshold
     ///     How large an error may be [% of the joint's peak torque].
     /// bounds
-    ///     Whether to look for bounds of the inertia matrix, of Coriolis and of gravity torques over the joint limits.
+    ///     Whether to look for bounds of inertia and Coriolis matrix and of gravity torques over the joint limits.
     ///
     /// Returns
     /// -------

@@ -1,10 +1,10 @@
 //! Laws of the analysis of when rotors matter.
 
 use gyroflex::model::Fidelity;
-use gyroflex_sim::analyze::{Options, bounds, motions, of_workspace, ranges, significance};
+use gyroflex_sim::analyze::{Options, bounds, coriolis_norm, motions, of_workspace, ranges, significance};
 use gyroflex_sim::load::{Embedded, LoadOptions, load, load_from};
 use gyroflex_sim::{Dynamics, Robot};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::path::{Path, PathBuf};
 
 /// Inertias of the links of the pair about their common axis [kg m²], and gear ratio and rotor inertia [kg m²] of both drives.
@@ -123,7 +123,7 @@ fn bounds_hold_for_ten_times_as_many_other_poses() {
         let found = bounds(&robot, &options).expect("physical");
         let mut complete = Dynamics::new(robot.model(Fidelity::Complete).expect("physical"));
         let n = complete.nv();
-        let mut m = vec![0.0; n * n];
+        let (mut m, mut g) = (vec![0.0; n * n], vec![0.0; n]);
         let others = Options { samples: 3000, seed: 99, ..options };
         for motion in motions(&robot, &ranges(&robot, &others), &others) {
             complete.mass_matrix(&motion.q, &mut m).expect("sizes fit");
@@ -136,10 +136,17 @@ fn bounds_hold_for_ten_times_as_many_other_poses() {
                 values.min(),
                 found.eigenvalue_min.value
             );
+            complete.gravity_torques(&motion.q, &mut g).expect("sizes fit");
+            assert!(DVector::from_column_slice(&g).norm() <= found.gravity_max.value, "{name}: {g:?}");
+            let speed = DVector::from_column_slice(&motion.qd).norm();
+            let c = coriolis_norm(&mut complete, &motion.q, &motion.qd).expect("sizes fit");
+            assert!(c <= found.coriolis_max.value * speed, "{name}: {c} {speed} {}", found.coriolis_max.value);
         }
         let at = &found.inertia_max;
         complete.mass_matrix(&at.q, &mut m).expect("sizes fit");
         close(DMatrix::from_row_slice(n, n, &m).singular_values().max(), at.value);
+        let at = &found.coriolis_max;
+        close(coriolis_norm(&mut complete, &at.q, &at.qd).expect("sizes fit"), at.value);
     }
 }
 

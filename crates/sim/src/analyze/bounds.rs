@@ -6,9 +6,8 @@ use super::{Options, fault};
 use crate::dynamics::Dynamics;
 use crate::error::Error;
 use crate::robot::Robot;
-use gyroflex::dynamics::{Acceleration, External, Inverse, State};
-use gyroflex::model::{Fidelity, Friction};
-use gyroflex::spatial::Vec3;
+use gyroflex::dynamics::{CoriolisMatrices, State};
+use gyroflex::model::Fidelity;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -22,8 +21,9 @@ pub struct Bounds {
     pub inertia_min: Bound,
     /// Smallest eigenvalue of `M(q)` [kg m²].
     pub eigenvalue_min: Bound,
-    /// Largest `‖C(q, q̇) q̇‖ / ‖q̇‖²`, from the links' velocity torques at unit velocities, without the rotors' [kg m²].
-    pub velocity_max: Bound,
+    /// Largest `‖C(q, q̇)‖₂ / ‖q̇‖`: the whole Coriolis matrix over links and motors in Christoffel form, in the complete model, the
+    /// motors turning with their joints [kg m²].
+    pub coriolis_max: Bound,
     /// Largest `‖g(q)‖` [N m].
     pub gravity_max: Bound,
 }
@@ -74,40 +74,43 @@ pub fn bounds(robot: &Robot, options: &Options) -> Result<Bounds, Error> {
     let inertia_min = search(&limits, &mut |q| Ok(-eigenvalues(q)?[1]))?;
     let eigenvalue_min = search(&limits, &mut |q| Ok(-eigenvalues(q)?[0]))?;
 
-    // What the links alone ask for: no friction, no rotors' couples.
-    let mut bare = robot.clone();
-    for body in &mut bare.bodies {
-        body.friction = Friction::none();
-        if let Some(drive) = &mut body.drive {
-            drive.friction = Friction::none();
-        }
-    }
-    let mut links = Dynamics::new(bare.model(Fidelity::Reduced)?);
-    let rest = vec![0.0; n];
-    let (mut tau_j, mut tau) = (rest.clone(), rest.clone());
-    let mut torque = |dynamics: &mut Dynamics, q: &[f64], qd: &[f64]| -> Result<f64, Error> {
-        let state = State { q, qd, theta: q, thetad: qd };
-        let out = Inverse { tau_j: &mut tau_j, tau: &mut tau };
-        dynamics.inverse(state, Acceleration { qdd: &rest, thetadd: &rest }, External::none(), out)?;
-        Ok(norm(&tau_j))
-    };
-    let zero = vec![0.0; n];
-    let gravity_max = search(&limits, &mut |q| torque(&mut links, q, &zero))?;
-    links.set_gravity(Vec3::zero());
+    let mut g = vec![0.0; n];
+    let gravity_max = search(&limits, &mut |q| {
+        complete.gravity_torques(q, &mut g)?;
+        Ok(norm(&g))
+    })?;
     let with_velocity: Vec<[f64; 2]> = limits.iter().copied().chain(vec![[-1.0, 1.0]; n]).collect();
-    let velocity_max = search(&with_velocity, &mut |x| {
+    let coriolis_max = search(&with_velocity, &mut |x| {
         let (q, u) = x.split_at(n);
-        torque(&mut links, q, &unit(u))
+        coriolis_norm(&mut complete, q, &unit(u))
     })?;
     let at = |f: Found, sign: f64| Bound { value: sign * f.value, q: f.at, qd: Vec::new() };
-    let (q, u) = velocity_max.at.split_at(n);
+    let (q, u) = coriolis_max.at.split_at(n);
     Ok(Bounds {
         inertia_max: at(inertia_max, 1.0),
         inertia_min: at(inertia_min, -1.0),
         eigenvalue_min: at(eigenvalue_min, -1.0),
-        velocity_max: Bound { value: velocity_max.value, q: q.to_vec(), qd: unit(u) },
+        coriolis_max: Bound { value: coriolis_max.value, q: q.to_vec(), qd: unit(u) },
         gravity_max: at(gravity_max, 1.0),
     })
+}
+
+/// `‖[C C₁; C₂ 0]‖₂` with motors that turn with their joints.
+///
+/// # Errors
+/// A slice that does not fit the model.
+pub fn coriolis_norm(dynamics: &mut Dynamics, q: &[f64], qd: &[f64]) -> Result<f64, Error> {
+    let n = qd.len();
+    let [mut c, mut c1, mut c2] = [(); 3].map(|()| vec![0.0; n * n]);
+    let out = CoriolisMatrices { c: &mut c, c1: &mut c1, c2: &mut c2 };
+    dynamics.coriolis_matrices(State { q, qd, theta: q, thetad: qd }, out)?;
+    let whole = DMatrix::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+        (true, true) => c[i * n + j],
+        (true, false) => c1[i * n + j - n],
+        (false, true) => c2[(i - n) * n + j],
+        (false, false) => 0.0,
+    });
+    Ok(whole.singular_values().max())
 }
 
 fn norm(v: &[f64]) -> f64 {

@@ -16,7 +16,7 @@ mod significance;
 mod text;
 mod workspace;
 
-pub use bounds::{Bound, Bounds, bounds};
+pub use bounds::{Bound, Bounds, bounds, coriolis_norm};
 pub use motion::Motion;
 pub use recorded::{of_log, of_scenario};
 pub use report::{JointReport, Report, Side, SignificanceRange};
@@ -39,7 +39,7 @@ pub struct Options {
     pub rise: f64,
     /// Share of a joint's peak torque that the error of a model that is enough stays below [%].
     pub threshold: f64,
-    /// Whether to search for the bounds of `M`, of the velocity torques and of `g`.
+    /// Whether to search for the bounds of `M`, `C` and `g`.
     pub bounds: bool,
 }
 

@@ -46,7 +46,7 @@ impl fmt::Display for Bounds {
             ("largest ||M||", "kg m²", &self.inertia_max),
             ("smallest ||M||", "kg m²", &self.inertia_min),
             ("smallest eigenvalue of M", "kg m²", &self.eigenvalue_min),
-            ("largest ||C qd|| / ||qd||²", "kg m²", &self.velocity_max),
+            ("largest ||C|| / ||qd||", "kg m²", &self.coriolis_max),
             ("largest ||g||", "N m", &self.gravity_max),
         ];
         for (name, unit, Bound { value, q, qd }) in rows {
