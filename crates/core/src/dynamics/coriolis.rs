@@ -13,10 +13,8 @@
 //!
 //! Cost O(n·depth), of the vectors O(n). No allocation, no branch on values.
 
-use super::at_base::{
-    DerivativeScratch, Entries, OnCarrier, add, carrier, for_each_carrying, for_each_pair, hand_on, load_carrier,
-    outward, spin,
-};
+use super::at_base::{DerivativeScratch, add, carrier, hand_on, load_carrier, outward, spin};
+use super::pairs::{Entries, OnCarrier, for_each_carrying, for_each_pair};
 use super::{State, check_scratch, check_state};
 use crate::Scalar;
 use crate::model::{Drive, JointKind, Model, SizeError};

@@ -5,11 +5,9 @@
 //!
 //! Cost O(n·depth). No allocation, no branch on values.
 
-use super::at_base::{
-    DerivativeScratch, Entries, OnCarrier, add, carrier, for_each_carrying, for_each_pair, hand_on, load_carrier,
-    outward, spin, subtract_wrenches,
-};
+use super::at_base::{DerivativeScratch, add, carrier, hand_on, load_carrier, outward, spin, subtract_wrenches};
 use super::drive_torque::transmission_error;
+use super::pairs::{Entries, OnCarrier, for_each_carrying, for_each_pair};
 use super::{Acceleration, External, State, check_external, check_scratch, check_state};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};

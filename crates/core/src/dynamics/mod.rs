@@ -23,6 +23,7 @@ mod joint_space;
 mod kinematics;
 mod moving;
 mod operational;
+mod pairs;
 mod regressor;
 mod rnea;
 mod singular;
@@ -40,9 +41,10 @@ pub use forward_derivatives::{ForwardDerivatives, derivative_matrix_len, forward
 pub use inverse_derivatives::{InverseDerivatives, inverse_derivatives};
 pub use joint_space::{JointSpaceScratch, forward_in_joint_space};
 pub use kinematics::{Axes, Frame, jacobian, placements, velocities};
-pub use operational::{OperationalSpace, SingularValues, Task, operational_len, operational_space};
+pub use operational::{OperationalSpace, Task, operational_len, operational_space};
 pub use regressor::{PARAMETERS, Regressor, parameters, regressor};
 pub use rnea::{RneaScratch, rnea};
+pub use singular::SingularValues;
 
 use crate::Scalar;
 use crate::model::{Model, SizeError};

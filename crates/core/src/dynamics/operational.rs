@@ -11,13 +11,12 @@
 //! `J M⁻¹ Jᵀ` is never inverted: with `M = Lᵀ D L` it is `W Wᵀ` for `W = J L⁻¹ D^-½`, and the singular values of `W` say in which
 //! directions the frame can move.
 
-use super::at_base::{
-    DerivativeScratch, carrier, for_each_carrying, for_each_inertia, hand_on, load_carrier, outward, spin, unit,
-};
+use super::at_base::{DerivativeScratch, carrier, hand_on, load_carrier, outward, spin, unit};
 use super::branches::{factorise, half_solve, solve};
 use super::euler::{Angles, Rotation};
 use super::kinematics::Frame;
-use super::singular::{Rows, orthogonalise};
+use super::pairs::{for_each_carrying, for_each_inertia};
+use super::singular::{Rows, SingularValues, orthogonalise};
 use super::tree::RootMotion;
 use super::{State, check_scratch, check_state};
 use crate::Scalar;
@@ -54,17 +53,6 @@ pub struct OperationalSpace<'a, T> {
     pub velocity_force: &'a mut [T],
     /// `p`, `m` entries.
     pub gravity_force: &'a mut [T],
-}
-
-/// How far a robot is from a pose in which the frame cannot move in all directions.
-#[derive(Clone, Copy, Debug)]
-pub struct SingularValues<T> {
-    /// The smallest singular value of `J` in the task's directions [m/rad and –, mixed as the rows are].
-    pub smallest: T,
-    /// The largest.
-    pub largest: T,
-    /// The smallest singular value of `T` in `ω = T φ̇`: 0 where the angles do not describe rotation, 1 for the geometric rates.
-    pub representation: T,
 }
 
 /// Entries of the matrix that [`operational_space`] works in.

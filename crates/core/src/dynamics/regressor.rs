@@ -10,8 +10,9 @@
 //!
 //! Cost O(n·depth). No allocation, no branch on values.
 
-use super::at_base::{DerivativeScratch, OnCarrier, carrier, for_each_carrying, outward};
+use super::at_base::{DerivativeScratch, carrier, outward};
 use super::drive_torque::transmission_error;
+use super::pairs::{OnCarrier, for_each_carrying};
 use super::{Acceleration, State, check_scratch, check_state};
 use crate::Scalar;
 use crate::model::{Body, Drive, Friction, JointKind, Model, SizeError};

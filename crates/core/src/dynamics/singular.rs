@@ -1,7 +1,17 @@
 //! Singular values of a few rows, by rotations that make them orthogonal (Hestenes 1958): as many sweeps for every matrix.
 
-use super::operational::SingularValues;
 use crate::Scalar;
+
+/// How far a robot is from a pose in which the frame cannot move in all directions.
+#[derive(Clone, Copy, Debug)]
+pub struct SingularValues<T> {
+    /// The smallest singular value of `J` in the task's directions [m/rad and –, mixed as the rows are].
+    pub smallest: T,
+    /// The largest.
+    pub largest: T,
+    /// The smallest singular value of `T` in `ω = T φ̇`: 0 where the angles do not describe rotation, 1 for the geometric rates.
+    pub representation: T,
+}
 
 /// At most six rows of a matrix.
 pub(super) struct Rows<'a, T> {

@@ -1,10 +1,8 @@
 //! The passes over the bodies.
 
-use super::super::at_base::{
-    Entries, OnCarrier, add, carrier, for_each_carrying, for_each_inertia, for_each_pair, hand_on, load_carrier,
-    outward, set, spin, subtract_wrenches, unit,
-};
+use super::super::at_base::{add, carrier, hand_on, load_carrier, outward, set, spin, subtract_wrenches, unit};
 use super::super::drive_torque::{JointState, drives, sensitivity};
+use super::super::pairs::{Entries, OnCarrier, for_each_carrying, for_each_inertia, for_each_pair};
 use super::super::{DerivativeScratch, External, Forward, State};
 use super::ForwardDerivatives;
 use super::stride;
