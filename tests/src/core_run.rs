@@ -169,9 +169,9 @@ pub(crate) struct Inputs<T> {
     qd: Vec<T>,
     theta: Vec<T>,
     thetad: Vec<T>,
-    qdd: Vec<T>,
-    thetadd: Vec<T>,
-    tau: Vec<T>,
+    pub(crate) qdd: Vec<T>,
+    pub(crate) thetadd: Vec<T>,
+    pub(crate) tau: Vec<T>,
     tau_ext: Vec<T>,
     wrenches: Vec<Force<T>>,
 }
@@ -211,7 +211,7 @@ impl<T: Real> Inputs<T> {
         State { q: &self.q, qd: &self.qd, theta: &self.theta, thetad: &self.thetad }
     }
 
-    fn external(&self) -> External<'_, T> {
+    pub(crate) fn external(&self) -> External<'_, T> {
         External { tau: &self.tau_ext, wrenches: &self.wrenches }
     }
 }

@@ -2,6 +2,7 @@
 //! scalar, and the loop over robots.
 
 mod core_run;
+mod derivative_run;
 mod laws;
 mod velocity_run;
 

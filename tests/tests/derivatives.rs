@@ -3,9 +3,8 @@
 
 use gyroflex::Scalar;
 use gyroflex::dynamics::{
-    AbaScratch, Acceleration, DerivativeScratch, External, Forward, ForwardDerivatives, ForwardScratch, Inverse,
-    InverseDerivatives, JointSpaceScratch, RneaScratch, State, derivative_matrix_len, forward_derivatives,
-    forward_dynamics, inverse_derivatives, joint_space_len, matrix_len, rnea,
+    AbaScratch, Acceleration, External, Forward, ForwardScratch, Inverse, JointSpaceScratch, RneaScratch, State,
+    forward_dynamics, joint_space_len, matrix_len, rnea,
 };
 use gyroflex::model::{Fidelity, Model};
 use gyroflex::spatial::Force;
@@ -13,7 +12,7 @@ use gyroflex_testkit::dual::moving_positions;
 use gyroflex_testkit::random::Options;
 use gyroflex_testkit::tolerance::{norm, tol};
 use gyroflex_testkit::{Dual, State as Point};
-use gyroflex_tests::{Trial, for_trials};
+use gyroflex_tests::{Core, Trial, for_trials, small};
 
 /// The state as dual numbers, one of its vectors moving along coordinate `k`.
 struct Moving {
@@ -120,22 +119,11 @@ fn along(x: &mut [Dual], k: usize) {
 
 fn forward(t: &Trial<'_, f64>) {
     let (model, s) = (t.core.model(), &t.state);
-    let nv = model.nv();
-    let wrenches: Vec<Force<f64>> = s.wrenches.iter().map(|w| Force::from(*w)).collect();
-    let state = State { q: &s.q, qd: &s.qd, theta: &s.theta, thetad: &s.thetad };
-    let ext = External { tau: &s.tau_ext, wrenches: &wrenches };
-    let mut scratch = vec![DerivativeScratch::new(); model.bodies().len()];
-    let mut matrix = vec![f64::NAN; derivative_matrix_len(&model)];
-    let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![f64::NAN; nv]);
-    let [mut d_qdd, mut d_thetadd] = [(); 2].map(|()| vec![f64::NAN; 5 * nv * nv]);
-    let value = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
-    let out = ForwardDerivatives { qdd: &mut d_qdd, thetadd: &mut d_thetadd };
-    forward_derivatives(&model, state, &s.tau, ext, &mut scratch, &mut matrix, value, out).expect("slices fit");
-
+    let (value, [d_qdd, d_thetadd]) = t.core.clone().with_dirty_scratch().forward_derivatives(s);
     let want = t.core.forward(s);
-    t.assert_close("qdd", &qdd, &want.qdd, 0.0);
-    t.assert_close("thetadd", &thetadd, &want.thetadd, 0.0);
-    t.assert_close("tau_j", &tau_j, &want.tau_j, 0.0);
+    t.assert_close("qdd", &value.qdd, &want.qdd, 0.0);
+    t.assert_close("thetadd", &value.thetadd, &want.thetadd, 0.0);
+    t.assert_close("tau_j", &value.tau_j, &want.tau_j, 0.0);
     let blocks: [Block; 5] = [
         ("q", Moving::position),
         ("qd", |mut m, k| {
@@ -159,16 +147,8 @@ fn forward(t: &Trial<'_, f64>) {
 }
 
 fn inverse(t: &Trial<'_, f64>) {
-    let (model, s) = (t.core.model(), &t.state);
-    let nv = model.nv();
-    let wrenches: Vec<Force<f64>> = s.wrenches.iter().map(|w| Force::from(*w)).collect();
-    let state = State { q: &s.q, qd: &s.qd, theta: &s.theta, thetad: &s.thetad };
-    let accel = Acceleration { qdd: &s.qdd, thetadd: &s.thetadd };
-    let ext = External { tau: &s.tau_ext, wrenches: &wrenches };
-    let mut scratch = vec![DerivativeScratch::new(); model.bodies().len()];
-    let [mut tau_j, mut tau] = [(); 2].map(|()| vec![f64::NAN; 6 * nv * nv]);
-    let out = InverseDerivatives { tau_j: &mut tau_j, tau: &mut tau };
-    inverse_derivatives(&model, state, accel, ext, &mut scratch, out).expect("slices fit");
+    let model = t.core.model();
+    let [tau_j, tau] = t.core.clone().with_dirty_scratch().inverse_derivatives(&t.state);
     let blocks: [Block; 6] = [
         ("q", Moving::position),
         ("qd", |mut m, k| {
@@ -203,4 +183,22 @@ fn derivatives_of_inverse_dynamics_equal_automatic_differentiation() {
 #[test]
 fn derivatives_of_forward_dynamics_equal_automatic_differentiation() {
     for_trials::<f64>(200, &Options::default(), &Fidelity::ALL, tol(1e-9, 0.0), forward);
+}
+
+/// Block by block, against double precision, which automatic differentiation has shown right.
+fn as_in_double_precision(t: &Trial<'_, f32>) {
+    let (s, double) = (&t.state, Core::<f64>::new(&t.robot.spec(), t.fidelity));
+    let [got, want] = [t.core.inverse_derivatives(s), double.inverse_derivatives(s)];
+    for (name, got, want) in [("tau_j", &got[0], &want[0]), ("tau", &got[1], &want[1])] {
+        t.assert_close(&format!("derivatives of {name}"), got, want, 0.0);
+    }
+    let [(_, got), (_, want)] = [t.core.forward_derivatives(s), double.forward_derivatives(s)];
+    for (name, got, want) in [("qdd", &got[0], &want[0]), ("thetadd", &got[1], &want[1])] {
+        t.assert_close(&format!("derivatives of {name}"), got, want, 0.0);
+    }
+}
+
+#[test]
+fn derivatives_in_single_precision() {
+    for_trials::<f32>(200, &small(), &Fidelity::ALL, tol(0.0, 1e-3), as_in_double_precision);
 }
