@@ -71,11 +71,14 @@ extern crate std;
 pub mod dispatch;
 pub mod dynamics;
 pub mod integrate;
+mod jet;
 mod lanes;
 pub mod model;
+mod newton;
 pub mod scalar;
 pub mod spatial;
 mod trig;
 
+pub use jet::Jet;
 pub use lanes::Lanes;
 pub use scalar::Scalar;
