@@ -132,7 +132,7 @@ fn assert_orders_are_exact(name: &str, spec: &RobotSpec<'_>, fidelity: Fidelity)
         for (derivative, felt) in [(order.position, true), (order.position + 1, false)] {
             let mut perturbed = motion.clone();
             // Large enough to be felt through springs and small coupling.
-            let change = 1e4 * perturbed.derivatives[usize::from(derivative) - 1][joint].abs().max(1.0);
+            let change = 1e8 * perturbed.derivatives[usize::from(derivative) - 1][joint].abs().max(1.0);
             perturbed.derivatives[usize::from(derivative) - 1][joint] += change;
             let changed = torques(&perturbed);
             let most = plain[0].iter().zip(&changed[0]).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));

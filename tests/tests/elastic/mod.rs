@@ -1,7 +1,11 @@
 //! Motions for the inverse, and an inverse of another kind.
 
 use gyroflex::dynamics::{Acceleration, External, Inverse, JointOrders, RneaScratch, State, rnea};
-use gyroflex::model::{Model, SpringSpec, TransmissionSpec};
+use gyroflex::model::{
+    BodySpec, DriveSpec, Friction, JointKind, Model, MountSpec, RobotSpec, RotorSpec, SpringSpec, TransmissionError,
+    TransmissionSpec,
+};
+use gyroflex::spatial::{SpatialInertia, SymMat3, Transform, Vec3};
 use gyroflex::{Jet, Scalar};
 use gyroflex_testkit::random::RandomRobot;
 use gyroflex_tests::LinkMotion;
@@ -131,4 +135,103 @@ pub fn series_by_sweeps(model: &Model<'_, f64>, motion: &LinkMotion) -> [Vec<f64
     let value = |x: &[Series]| x.iter().map(Series::value).collect::<Vec<_>>();
     let thetad = rates(&theta);
     [value(&theta), value(&thetad), value(&rates(&thetad)), value(&tau_j), value(&tau)]
+}
+
+/// The same motion a time `t` later: its derivatives are those of a polynomial.
+pub fn later(motion: &LinkMotion, t: f64) -> LinkMotion {
+    let shift = |rows: &[&[f64]], k: usize| -> Vec<f64> {
+        let term = |j: usize, i: usize| rows[k + j][i] * t.powi(j as i32) / (1..=j).map(|x| x as f64).product::<f64>();
+        (0..rows[k].len()).map(|i| (0..rows.len() - k).map(|j| term(j, i)).sum()).collect()
+    };
+    let all = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        (0..rows.len()).map(|k| shift(&rows, k)).collect()
+    };
+    let mut positions = vec![motion.q.clone()];
+    positions.extend(motion.derivatives.iter().cloned());
+    let mut moved = all(&positions);
+    let wrenches: Vec<Vec<f64>> = motion.wrenches.iter().map(|row| row.concat()).collect();
+    let unflatten = |row: Vec<f64>| row.chunks(6).map(|w| std::array::from_fn(|i| w[i])).collect();
+    LinkMotion {
+        q: moved.remove(0),
+        derivatives: moved,
+        tau_ext: all(&motion.tau_ext),
+        wrenches: all(&wrenches).into_iter().map(unflatten).collect(),
+        ..motion.clone()
+    }
+}
+
+/// Every number as single precision has it.
+pub fn rounded(motion: LinkMotion) -> LinkMotion {
+    let row = |x: Vec<f64>| -> Vec<f64> { x.into_iter().map(|x| f64::from(x as f32)).collect() };
+    let rows = |x: Vec<Vec<f64>>| x.into_iter().map(row).collect();
+    let wrenches = motion.wrenches.into_iter();
+    LinkMotion {
+        q: row(motion.q),
+        derivatives: rows(motion.derivatives),
+        deflection: row(motion.deflection),
+        step: f64::from(motion.step as f32),
+        tau_ext: rows(motion.tau_ext),
+        wrenches: wrenches.map(|w| w.into_iter().map(|w| w.map(|x| f64::from(x as f32))).collect()).collect(),
+    }
+}
+
+/// A link about a vertical axis through its centre of mass, its motor on the ground.
+pub fn turntable(inertia: f64, stiffness: f64, cubic: f64, damping: f64) -> BodySpec {
+    let axis = Vec3::new(0.0, 0.0, 1.0);
+    BodySpec {
+        parent: None,
+        joint: JointKind::Revolute,
+        axis,
+        placement: Transform::identity(),
+        inertia: SpatialInertia::from_com(1.0, Vec3::zero(), SymMat3::diagonal(inertia, inertia, inertia)),
+        friction: Friction::none(),
+        drive: Some(DriveSpec {
+            rotor: RotorSpec {
+                inertia: 1e-4,
+                body: None,
+                mount: MountSpec { body: None, placement: Transform::identity(), axis },
+            },
+            gear_ratio: 100.0,
+            transmission: TransmissionSpec::Elastic {
+                spring: SpringSpec::Polynomial { stiffness, cubic },
+                damping,
+                error: TransmissionError::none(),
+            },
+            friction: Friction::none(),
+        }),
+    }
+}
+
+/// The robot of these bodies.
+pub fn spec(bodies: &[BodySpec]) -> RobotSpec<'_> {
+    RobotSpec { bodies, spring_tables: &[], gravity: [0.0, 0.0, -9.81].into() }
+}
+
+/// `D δ̇ + K δ = Σ τ_k tᵏ/k!` solved: the convolution of each power with the decay, by its own power series where the decay is slow, by
+/// the particular polynomial where it is fast.
+pub fn damped_deflection(torque: &[f64], stiffness: f64, damping: f64, start: f64, t: f64) -> f64 {
+    let decay = stiffness / damping;
+    let factorial = |n: usize| (1..=n).map(|x| x as f64).product::<f64>();
+    if decay * t < 2.0 {
+        // ∫₀ᵗ e^{−λ(t−s)} sᵏ/k! ds = Σ_j (−λ)ʲ t^{k+1+j}/(k+1+j)!
+        let integral = |k: usize| {
+            (0..60).map(|j| (-decay).powi(j) * t.powi(k as i32 + 1 + j) / factorial(k + 1 + j as usize)).sum::<f64>()
+        };
+        let forced: f64 = torque.iter().enumerate().map(|(k, tau)| tau / damping * integral(k)).sum();
+        return start * (-decay * t).exp() + forced;
+    }
+    // p = Σ_j (−1/λ)ʲ τ⁽ʲ⁾ / K
+    let polynomial = |t: f64| {
+        let derivative = |j: usize| {
+            torque
+                .iter()
+                .enumerate()
+                .skip(j)
+                .map(|(k, tau)| tau * t.powi((k - j) as i32) / factorial(k - j))
+                .sum::<f64>()
+        };
+        (0..torque.len()).map(|j| (-1.0 / decay).powi(j as i32) * derivative(j) / stiffness).sum::<f64>()
+    };
+    polynomial(t) + (start - polynomial(0.0)) * (-decay * t).exp()
 }
