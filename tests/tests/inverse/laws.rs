@@ -1,15 +1,13 @@
 //! Laws of the inverse dynamics of elastic robots.
 
-mod elastic;
-
-use elastic::{random_motion, series_by_sweeps};
+use crate::oracles::{self, series_by_sweeps};
 use gyroflex::dynamics::{InverseError, JointOrders, MAX_COEFFICIENTS, VANISHING};
 use gyroflex::model::Fidelity;
 use gyroflex_testkit::State;
 use gyroflex_testkit::random::{Options, RandomRobot};
 use gyroflex_testkit::reference::{Case, number, numbers};
 use gyroflex_testkit::tolerance::{assert_close, assert_close_above, norm};
-use gyroflex_tests::{Core, LinkMotion, MotorMotion, smoothness};
+use gyroflex_tests::{Core, LinkMotion, MotorMotion, random_motion, settling, smoothness};
 
 const ELASTIC: [Fidelity; 2] = [Fidelity::Complete, Fidelity::Reduced];
 
@@ -39,7 +37,7 @@ fn state(motion: &LinkMotion, motors: &MotorMotion) -> State {
 fn forward_dynamics_of_the_inverse_returns_the_motion() {
     let (mut trials, mut sharp) = (0, 0);
     for seed in 0..400 {
-        let robot = elastic::settling(RandomRobot::new(seed, &robots()));
+        let robot = settling(RandomRobot::new(seed, &robots()));
         for fidelity in ELASTIC {
             let orders = smoothness(&robot.spec(), fidelity, 0, VANISHING);
             let core = Core::<f64>::new(&robot.spec(), fidelity).with_dirty_scratch();
@@ -49,9 +47,9 @@ fn forward_dynamics_of_the_inverse_returns_the_motion() {
             let got = core.forward(&s);
             let context = format!("seed {seed}, model {}", fidelity.name());
             // Forward dynamics takes small differences of positions and of torques: what it loses there is not the inverse's.
-            let floor = elastic::rounding_of_forward(&core.model(), &s, &motors.tau_j[0]) / 1e-9;
+            let floor = oracles::rounding_of_forward(&core.model(), &s, &motors.tau_j[0]) / 1e-9;
             assert_close_above("qdd", &context, &got.qdd, &s.qdd, 1e-9, floor);
-            let thetadd = elastic::at_motors(&core.model(), &got.thetadd, &s.thetadd);
+            let thetadd = oracles::at_motors(&core.model(), &got.thetadd, &s.thetadd);
             assert_close_above("thetadd", &context, &thetadd, &s.thetadd, 1e-9, floor);
             trials += 1;
             sharp += u32::from(floor < 1e3);
@@ -74,7 +72,7 @@ fn undamped_inverse_equals_repeated_sweeps_of_rnea_on_whole_series() {
             let got = core.elastic_inverse(&orders, 0, &motion).expect("random springs can be inverted");
             let [theta, thetad, thetadd, tau_j, tau] = series_by_sweeps(&core.model(), &motion);
             let context = format!("seed {seed}, model {}", fidelity.name());
-            let at_motors = |x: &[f64], want: &[f64]| elastic::at_motors(&core.model(), x, want);
+            let at_motors = |x: &[f64], want: &[f64]| oracles::at_motors(&core.model(), x, want);
             assert_close("theta", &context, &at_motors(&got.theta[0], &theta), &theta, 1e-8);
             assert_close("thetad", &context, &at_motors(&got.theta[1], &thetad), &thetad, 1e-8);
             assert_close("thetadd", &context, &at_motors(&got.theta[2], &thetadd), &thetadd, 1e-8);
@@ -126,7 +124,7 @@ fn torque_derivatives_are_the_rates_of_the_torques() {
             let core = Core::<f64>::new(&robot.spec(), fidelity);
             let motion = random_motion(&robot, &core.model(), &orders, 0);
             let at =
-                |t: f64| core.elastic_inverse(&orders, 2, &elastic::later(&motion, t)).expect("it can be inverted");
+                |t: f64| core.elastic_inverse(&orders, 2, &oracles::later(&motion, t)).expect("it can be inverted");
             let (now, h) = (at(0.0), 1e-5);
             let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| at(k * h));
             let context = format!("seed {seed}, model {}", fidelity.name());
@@ -155,12 +153,12 @@ fn torque_derivatives_are_the_rates_of_the_torques() {
 fn single_precision_follows_double() {
     let options = Options { bodies: 1..=5, ..Options::default() };
     for seed in 0..100 {
-        let robot = elastic::settling(RandomRobot::new(seed, &options));
+        let robot = settling(RandomRobot::new(seed, &options));
         for fidelity in ELASTIC {
             let orders = smoothness(&robot.spec(), fidelity, 0, VANISHING);
             let double = Core::<f64>::new(&robot.spec(), fidelity);
             let single = Core::<f32>::new(&robot.spec(), fidelity);
-            let motion = elastic::rounded(random_motion(&robot, &double.model(), &orders, 0));
+            let motion = oracles::rounded(random_motion(&robot, &double.model(), &orders, 0));
             let want = double.elastic_inverse(&orders, 0, &motion).expect("it can be inverted");
             // Numbers that single precision cannot hold are refused, not returned.
             let Ok(got) = single.elastic_inverse(&orders, 0, &motion) else {
@@ -181,8 +179,8 @@ fn one_step_of_the_deflection_is_exact_for_straight_springs() {
     // A joint about a vertical axis at rest in all but its acceleration: τ_J = I q̈, to third order.
     let inertia = 2.0;
     for (stiffness, damping) in [(1e4, 15.0), (1e4, 0.5), (50.0, 300.0), (1e6, 1.0)] {
-        let bodies = [elastic::turntable(inertia, stiffness, 0.0, damping)];
-        let spec = elastic::spec(&bodies);
+        let bodies = [oracles::turntable(inertia, stiffness, 0.0, damping)];
+        let spec = oracles::spec(&bodies);
         let orders = smoothness(&spec, Fidelity::Complete, 2, VANISHING);
         let core = Core::<f64>::new(&spec, Fidelity::Complete);
         for step in [1e-5, 1e-4, 1e-3, 1e-2, 0.3] {
@@ -193,7 +191,7 @@ fn one_step_of_the_deflection_is_exact_for_straight_springs() {
             let motion =
                 LinkMotion { q: vec![0.4], derivatives, deflection: vec![start], step, ..LinkMotion::default() };
             let got = core.elastic_inverse(&orders, 2, &motion).expect("it can be inverted").deflection[0];
-            let want = elastic::damped_deflection(&torque, stiffness, damping, start, step);
+            let want = oracles::damped_deflection(&torque, stiffness, damping, start, step);
             let context = format!("K {stiffness}, D {damping}, step {step}");
             assert_close("deflection", &context, &[got], &[want], 1e-9);
         }
@@ -204,8 +202,8 @@ fn one_step_of_the_deflection_is_exact_for_straight_springs() {
 #[test]
 fn steps_of_the_deflection_are_of_second_order_for_stiffening_springs() {
     let (inertia, stiffness, cubic, damping) = (2.0, 1e3, 5e7, 10.0);
-    let bodies = [elastic::turntable(inertia, stiffness, cubic, damping)];
-    let spec = elastic::spec(&bodies);
+    let bodies = [oracles::turntable(inertia, stiffness, cubic, damping)];
+    let spec = oracles::spec(&bodies);
     let orders = smoothness(&spec, Fidelity::Complete, 0, VANISHING);
     let core = Core::<f64>::new(&spec, Fidelity::Complete);
     let omega: f64 = 20.0;
@@ -241,8 +239,8 @@ fn steps_of_the_deflection_are_of_second_order_for_stiffening_springs() {
 /// What cannot be computed is said, joint and reason.
 #[test]
 fn impossible_inverses_are_refused() {
-    let bodies = [elastic::turntable(2.0, 1e3, 0.0, 0.0)];
-    let spec = elastic::spec(&bodies);
+    let bodies = [oracles::turntable(2.0, 1e3, 0.0, 0.0)];
+    let spec = oracles::spec(&bodies);
     let orders = smoothness(&spec, Fidelity::Complete, 0, VANISHING);
     let core = Core::<f64>::new(&spec, Fidelity::Complete);
     let motion = |rows: usize, size: f64| LinkMotion {
@@ -256,8 +254,8 @@ fn impossible_inverses_are_refused() {
     assert_eq!(run(motion(4, 1e308)), Err(InverseError::Overflow { body: 0 }));
     assert_eq!(run(motion(4, f64::NAN)), Err(InverseError::Overflow { body: 0 }));
     // A spring so curved that no search finds where it carries this torque.
-    let bodies = [elastic::turntable(2.0, 1e-3, 1e12, 0.0)];
-    let spec = elastic::spec(&bodies);
+    let bodies = [oracles::turntable(2.0, 1e-3, 1e12, 0.0)];
+    let spec = oracles::spec(&bodies);
     let core = Core::<f64>::new(&spec, Fidelity::Complete);
     let stiff = core.elastic_inverse(&orders, 0, &motion(4, 1e6)).map(|m| m.tau[0][0]);
     assert_eq!(stiff, Err(InverseError::Transmission { body: 0 }));
