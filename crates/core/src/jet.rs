@@ -82,9 +82,23 @@ impl<T: Scalar, const K: usize> Jet<T, K> {
     /// Coefficient `k` of a product: `Σ a_i b_{k−i}`, `i` from `first` to `k − first`.
     #[inline(always)]
     pub(crate) fn convolved(&self, b: &Self, k: usize, first: usize) -> T {
+        if K > UNROLLED {
+            return self.convolved_in_a_loop(b, k, first);
+        }
         let mut sum = T::zero();
         for i in first..(k + 1).saturating_sub(first) {
             sum = self.0[i].mul_add(b.0[k - i], sum);
+        }
+        sum
+    }
+
+    /// The same, as one piece of code for all `k`: of long series there would be too much.
+    #[inline(never)]
+    fn convolved_in_a_loop(&self, b: &Self, k: usize, first: usize) -> T {
+        let mut sum = T::zero();
+        let terms = (k + 1).saturating_sub(2 * first);
+        for (x, y) in self.0.iter().skip(first).zip(b.0.iter().take(k + 1 - first.min(k)).rev()).take(terms) {
+            sum = x.mul_add(*y, sum);
         }
         sum
     }
@@ -123,6 +137,9 @@ impl<T: Scalar, const K: usize> Jet<T, K> {
         f
     }
 }
+
+/// Coefficients up to which the loops of products are written out.
+const UNROLLED: usize = 9;
 
 /// `1/k!`.
 pub(crate) const fn inverse_factorial(k: usize) -> f64 {

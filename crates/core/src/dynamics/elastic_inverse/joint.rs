@@ -4,7 +4,7 @@ use super::outward::{set, speeds};
 use super::{ElasticInverse, ElasticInverseScratch, InverseError, Rates, transmission};
 use crate::dispatch::{Kernel, Over};
 use crate::jet::inverse_factorial;
-use crate::model::{Body, Drive, Knot};
+use crate::model::{Body, Drive, Friction, Knot};
 use crate::spatial::Vec3;
 use crate::{Jet, Scalar};
 
@@ -104,7 +104,7 @@ impl<T: Scalar, const N: usize> Kernel<T> for Joint<'_, '_, T, N> {
             let load = site.tau_ext.row(i).map_or(F::zero(), |x| F::load(*x) * F::from_f64(inverse_factorial(i)));
             body.joint.along(own[i].f.map(F::load)) - load
         });
-        tau_j += body.friction.torque(qd);
+        tau_j += friction(&body.friction, &qd, F::one());
 
         let Some(Drive { rotor, elastic }) = &body.drive else {
             out.theta_of_joint(k, site.q, site.rates);
@@ -116,29 +116,30 @@ impl<T: Scalar, const N: usize> Kernel<T> for Joint<'_, '_, T, N> {
         let (mut now, mut rate, mut motor) = (q, qd, tau_j);
         let (mut after, mut deflection_rate) = (F::zero(), F::zero());
         if let Some(elastic) = elastic {
-            let deflection = if site.damped {
-                transmission::damped::<T, F, N>(elastic, site.knots, &tau_j, F::load(site.deflection))
-            } else {
-                transmission::undamped::<T, F, N>(elastic, site.knots, &tau_j)
-            };
+            let now_deflected = F::load(site.deflection);
+            let deflection =
+                transmission::deflection::<T, F, N>(elastic, site.knots, &tau_j, site.damped, now_deflected);
             after = deflection.now;
             if site.damped {
-                after = deflection.after(F::load(site.step), F::from_param(elastic.damping), &tau_j);
+                let (damping, torque) = (T::from_param(elastic.damping), transmission::store(&tau_j).0);
+                after = F::load(transmission::after(&deflection, site.step, damping, &torque));
             }
             deflection_rate = deflection.rate.value();
-            let moving = transmission::motor::<T, F, N>(elastic, rotor, q, &qd, &deflection);
-            if tau_j.value().store().is_finite() && !moving.now.store().is_finite() {
-                return Err(InverseError::Transmission { body: index });
+            (now, rate) = (q + deflection.now, qd + deflection.rate);
+            if let Some(error) = &elastic.error {
+                let found = transmission::motor(error, rotor, now.store(), &transmission::store(&rate));
+                (now, rate) = (F::load(found.now), transmission::load(&found.rate));
+                motor = transmission::load::<T, F, N>(&found.share) * tau_j;
             }
-            (now, rate) = (moving.now, moving.rate);
-            if elastic.error.is_some() {
-                motor = moving.share * tau_j;
+            if tau_j.value().store().is_finite() && !now.store().is_finite() {
+                return Err(InverseError::Transmission { body: index });
             }
         }
         let acceleration = if elastic.is_some() { rate.rate() } else { qdd };
 
         // τ = (1 − e') τ_J + B θ̈ + N J n·α + N f_m,   and the couple ḣ n + ω × h n on the carrier
-        motor += acceleration.scale(F::from_param(rotor.reflected_inertia)) + rotor.reflected_friction(rate);
+        motor += acceleration.scale(F::from_param(rotor.reflected_inertia))
+            + friction(&rotor.friction, &rate, F::from_param(rotor.gear_ratio));
         let axis = rotor.axis_in::<F>();
         let (inertia, ratio) = (F::from_param(rotor.inertia), F::from_param(rotor.gear_ratio));
         let [mut about, mut across] = [(); 2].map(|()| Vec3::new(Jet::zero(), Jet::zero(), Jet::zero()));
@@ -168,4 +169,22 @@ impl<T: Scalar, const N: usize> Kernel<T> for Joint<'_, '_, T, N> {
         finite &= out.deflection(k, after, deflection_rate);
         if finite { Ok(()) } else { Err(overflow) }
     }
+}
+
+/// `N f(N v)`: friction of a shaft that turns `N` times as fast as `v`, seen from beyond the gear.
+#[inline(always)]
+fn friction<T: Scalar, F: Over<T>, const N: usize>(of: &Friction<T::Param>, v: &Jet<F, N>, ratio: F) -> Jet<F, N> {
+    let speed = v.scale(ratio);
+    let torque = if of.dry {
+        transmission::load(&dry_friction(of, &transmission::store(&speed)))
+    } else {
+        speed.scale(F::from_param(of.viscous))
+    };
+    torque.scale(ratio)
+}
+
+/// Dry friction as a series: a subroutine, since few robots have it and it is long.
+#[inline(never)]
+fn dry_friction<T: Scalar, const N: usize>(of: &Friction<T::Param>, speed: &Jet<T, N>) -> Jet<T, N> {
+    of.torque(*speed)
 }

@@ -26,6 +26,7 @@ use super::smoothness::Smoothness;
 use super::tree::Tree;
 use super::{External, check_scratch_len};
 use crate::Scalar;
+use crate::dispatch::Kernel;
 use crate::model::{Model, SizeError};
 use crate::spatial::{Force, Mat3, Turn};
 use joint::JointOutputs;
@@ -153,16 +154,16 @@ pub fn elastic_inverse<T: Scalar, const MAX: usize>(
     let first_body = bodies.len() - tree.joints.len();
 
     // Pass 1, base to tips: motions, and the forces that the bodies need.
-    with_size!(needed, MAX, N => T::dispatch(base::Base::<T, N> { model, motion, nv, scratch: &mut *scratch }));
+    with_size!(needed, MAX, N => base::Base::<T, N> { model, motion, nv, scratch: &mut *scratch });
     for (i, body) in tree.joints.iter().enumerate() {
         let (Some(order), own) = (smoothness.joints.get(first_body + i), (i + 1) * stride) else { break };
         let (before, rest) = scratch.split_at_mut_checked(own).ok_or(too_many)?;
         let parent = before.get(block(body.parent)..).unwrap_or(&[]);
         let rates = Rates { of: motion.derivatives, nv, k: body.v_index() };
         let q = motion.q.get(body.q_index()).map_or(T::zero(), |q| *q);
-        with_size!(usize::from(order.motion) + 1, MAX, N => T::dispatch(outward::Outward::<T, N> {
+        with_size!(usize::from(order.motion) + 1, MAX, N => outward::Outward::<T, N> {
             body, q, rates, parent, own: rest
-        }));
+        });
         let wrenches = Rates { of: ext.wrenches, nv: bodies.len(), k: first_body + i };
         outward::subtract_wrench(body, wrenches, rest.get_mut(..stride).unwrap_or(&mut []));
     }
@@ -186,16 +187,16 @@ pub fn elastic_inverse<T: Scalar, const MAX: usize>(
             deflection: deflections.now.get(k).map_or(T::zero(), |d| *d),
             step: deflections.step,
         };
-        with_size!(usize::from(order.force) + 1, MAX, N => T::dispatch(joint::Joint::<T, N> {
+        with_size!(usize::from(order.force) + 1, MAX, N => joint::Joint::<T, N> {
             site: joint, own: rest, carrier, out: &mut out
-        }))?;
+        })?;
         // The fixed world bears whatever comes.
         let parent_order = match body.parent() {
             None => continue,
             Some(parent) => smoothness.joints.get(parent).map_or(0, |order| usize::from(order.force)),
         };
         let parent = before.get_mut(block(body.parent)..).unwrap_or(&mut []);
-        with_size!(parent_order + 1, MAX, N => T::dispatch(inward::Inward::<T, N> { body, q, rates, own: rest, parent }));
+        with_size!(parent_order + 1, MAX, N => inward::Inward::<T, N> { body, q, rates, own: rest, parent });
     }
     if let Some(root) = tree.root {
         base::finish(root, ext, bodies.len(), motion, scratch, &mut out)?;
