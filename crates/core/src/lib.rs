@@ -68,6 +68,7 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+pub mod control;
 pub mod dispatch;
 pub mod dynamics;
 pub mod integrate;
