@@ -31,7 +31,7 @@ fn exact(m: u32, k: u32, a: i128) -> f64 {
     // c C(m, i) / (m+1+i) is whole: it is C(n, m+1+i) C(m+i, i).
     let term = |i: u32| {
         let j = m + 1 + i;
-        let sign = if i % 2 == 0 { 1 } else { -1 };
+        let sign = if i.is_multiple_of(2) { 1 } else { -1 };
         if j < k { 0 } else { sign * choose(n, j) * choose(m + i, i) * choose(j, k) * a.pow(j - k) * 4i128.pow(n - j) }
     };
     (0..=m).map(term).sum::<i128>() as f64 / 4f64.powi((n - k) as i32)
