@@ -3,7 +3,8 @@
 use super::{Reference, add_position};
 use crate::control::Real;
 
-/// Polynomials between knots in time, in storage of the caller's; it holds before the first knot and after the last.
+/// Polynomials between knots in time, in storage of the caller's; it holds before the first knot and after the last, which
+/// still belongs to the last piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piecewise<'a, T> {
     /// Where pieces begin, and where the last one ends, increasing [s].
@@ -33,7 +34,7 @@ impl<T: Real> Reference<T> for Piecewise<'_, T> {
         let count = self.coefficients.len() / pieces;
         let Some(c) = self.coefficients.get(piece * count..(piece + 1) * count) else { return };
         let begin = self.knots.get(piece).map_or(T::zero(), |k| *k);
-        if t < *first || t >= *last {
+        if t < *first || t > *last {
             let at = if t < *first { *first } else { *last };
             return add_position(weight * derivative(c, 0, at - begin), out);
         }
