@@ -12,8 +12,9 @@ use crate::control::Real;
 /// `Tᵢ = vᵢ₋₁ / vᵢ`. Where it is not, a bound is not reached: its length is then the sum of those behind it, and the peak that belongs to
 /// that solves one monotone equation.
 ///
-/// That is the minimum for up to three bounds. Of more bounds it is one that is near: where the fourth derivative's bound is the only one
-/// that is reached, the fastest motion takes 7 % less.
+/// That is the minimum for up to three bounds. Of more bounds it is one that is near as long as the way is long enough to reach most of
+/// them. On ways so short that only the last bound is reached, the fastest motion (whose pulses are not those of averages) takes 7 % less
+/// with four bounds, 18 % with five, 30 % with six.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MinimumTime<T, const N: usize> {
     from: T,
