@@ -165,6 +165,11 @@ impl Simulation {
             add("control_rate", rate.to_string());
         }
         add("log_rate", scenario.log.rate.to_string());
+        if scenario.shaper.is_some() {
+            let impulses = self.references.shaper().impulses().iter();
+            let text: Vec<_> = impulses.map(|i| format!("{} at {} s", i.amplitude, i.delay)).collect();
+            add("shaper_impulses", text.join(", "));
+        }
         if let Some(mode) = self.modes.fastest() {
             add("fastest_mode_hz", mode.frequency.to_string());
         }

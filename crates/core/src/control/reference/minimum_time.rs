@@ -119,10 +119,12 @@ impl<T: Real, const N: usize> Motion<T, N> {
     fn shift(&mut self, order: usize, t: T) {
         for k in 0..order {
             let mut sum = self.top;
-            for j in (k..order).rev() {
-                sum = self.low[j] + sum * t / T::of(j + 1 - k);
+            for (j, x) in self.low.iter().enumerate().take(order).skip(k).rev() {
+                sum = *x + sum * t / T::of(j + 1 - k);
             }
-            self.low[k] = sum;
+            if let Some(slot) = self.low.get_mut(k) {
+                *slot = sum;
+            }
         }
     }
 }

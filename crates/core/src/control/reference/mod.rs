@@ -17,7 +17,8 @@ use super::Real;
 /// The motion of one coordinate [rad or m] over time [s].
 pub trait Reference<T: Real> {
     /// Adds `weight` times the `k`-th time derivative at `t` to `out[k]`, the position first, for as many as `out` has entries.
-    /// Where a derivative jumps it is the one after `t`; where it does not exist, the impulse at the jump is left out.
+    /// Where a derivative jumps it is the one after `t`, up to the rounding of `t`; where it does not exist, the impulse at the jump is
+    /// left out.
     fn add_derivatives(&self, t: T, weight: T, out: &mut [T]);
 
     /// How many derivatives exist and are bounded, the last of which may jump; `None` for all.

@@ -86,8 +86,8 @@ impl<T: Real> PointToPoint<T> {
 impl<T: Real> Reference<T> for PointToPoint<T> {
     fn add_derivatives(&self, t: T, weight: T, out: &mut [T]) {
         let s = (t - self.start) / self.duration;
-        if s <= T::zero() || s >= T::one() {
-            return add_position(weight * if s <= T::zero() { self.from } else { self.to }, out);
+        if s < T::zero() || s >= T::one() {
+            return add_position(weight * if s < T::zero() { self.from } else { self.to }, out);
         }
         let Some((position, derivatives)) = out.split_first_mut() else { return };
         let way = weight * (self.to - self.from);
