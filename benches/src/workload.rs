@@ -3,11 +3,13 @@
 use crate::STATES;
 use gyroflex::Scalar;
 use gyroflex::dynamics::{
-    AbaScratch, Acceleration, CrbaScratch, DerivativeScratch, External, Forward, ForwardDerivatives, Inverse,
-    InverseDerivatives, RneaScratch, State, aba, crba, derivative_matrix_len, forward_derivatives, inverse_derivatives,
-    placements, rnea,
+    AbaScratch, Acceleration, Contains, CrbaScratch, Deflections, DerivativeScratch, ElasticInverse,
+    ElasticInverseScratch, External, Forward, ForwardDerivatives, Inverse, InverseDerivatives, JointMotion,
+    JointOrders, MAX_COEFFICIENTS, RneaScratch, Smoothness, SmoothnessScratch, State, VANISHING, aba, crba,
+    derivative_matrix_len, elastic_inverse, elastic_inverse_len, forward_derivatives, inverse_derivatives, placements,
+    required_smoothness, rnea, smoothness_len,
 };
-use gyroflex::model::{Body, BodySpec, Fidelity, Knot, Model, RobotSpec};
+use gyroflex::model::{Body, BodySpec, Fidelity, Knot, Model, RobotSpec, TransmissionSpec};
 use gyroflex::spatial::{Transform, Vec3};
 
 /// A robot's description in storage of its own.
@@ -26,6 +28,16 @@ impl Spec {
     pub fn without_drives(mut self) -> Self {
         for body in &mut self.bodies {
             body.drive = None;
+        }
+        self
+    }
+
+    /// The same robot without damping in its transmissions, whose inverse needs more derivatives.
+    pub fn undamped(mut self) -> Self {
+        for drive in self.bodies.iter_mut().filter_map(|b| b.drive.as_mut()) {
+            if let TransmissionSpec::Elastic { damping, .. } = &mut drive.transmission {
+                *damping = 0.0;
+            }
         }
         self
     }
@@ -58,12 +70,21 @@ pub enum Algorithm {
     ForwardDerivatives,
     /// Derivatives of inverse dynamics.
     InverseDerivatives,
+    /// Motors and torques from the motion of the links, with elastic transmissions.
+    ElasticInverse,
 }
 
 impl Algorithm {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Aba, Self::Rnea, Self::Crba, Self::Placements, Self::ForwardDerivatives, Self::InverseDerivatives];
+    pub const ALL: [Self; 7] = [
+        Self::Aba,
+        Self::Rnea,
+        Self::Crba,
+        Self::Placements,
+        Self::ForwardDerivatives,
+        Self::InverseDerivatives,
+        Self::ElasticInverse,
+    ];
 
     /// Whether it computes derivatives, of which a call takes many times as long.
     pub const fn is_derivative(self) -> bool {
@@ -79,6 +100,7 @@ impl Algorithm {
             Self::Placements => "placements",
             Self::ForwardDerivatives => "forward_derivatives",
             Self::InverseDerivatives => "inverse_derivatives",
+            Self::ElasticInverse => "elastic_inverse",
         }
     }
 }
@@ -100,6 +122,11 @@ pub struct Workload<T: Scalar + 'static> {
     sensitivities: Vec<DerivativeScratch<T>>,
     derivative_matrix: Vec<T>,
     derivatives: [Vec<T>; 2],
+    orders: Vec<JointOrders>,
+    motion: Vec<T>,
+    series: Vec<ElasticInverseScratch<T>>,
+    start: Vec<T>,
+    motors: [Vec<T>; 3],
 }
 
 impl<T: Scalar + 'static> Workload<T> {
@@ -122,7 +149,16 @@ impl<T: Scalar + 'static> Workload<T> {
             })
             .collect();
         let zeros = |length| vec![T::zero(); length];
+        let orders = orders(&spec.lower::<f64>(fidelity));
+        let smoothness = Smoothness { joints: &orders, torque_derivatives: 0 };
+        let motion = (0..smoothness.order() * nv).map(|i| T::from_f64(3f64.powi((i / nv) as i32) * uniform()));
+        let (motion, coefficients) = (motion.collect(), elastic_inverse_len(&model, &smoothness));
         Self {
+            motion,
+            series: vec![ElasticInverseScratch::new(); coefficients.unwrap_or(0)],
+            start: vec![T::from_f64(1e-3); nv],
+            motors: [zeros(3 * nv), zeros(nv), zeros(nv)],
+            orders,
             aba: vec![AbaScratch::new(); n],
             rnea: vec![RneaScratch::new(); n],
             crba: vec![CrbaScratch::new(); n],
@@ -137,9 +173,19 @@ impl<T: Scalar + 'static> Workload<T> {
         }
     }
 
-    /// Whether the algorithm is the one for this model: with rigidly geared rotors on far links, forward dynamics is not.
+    /// Whether the algorithm is the one for this model: with rigidly geared rotors on far links, forward dynamics is not, and without
+    /// an elastic joint there is nothing for the elastic inverse to do.
     pub fn takes(&self, algorithm: Algorithm) -> bool {
-        algorithm != Algorithm::Aba || !self.model.has_remote_rigid_rotor()
+        match algorithm {
+            Algorithm::Aba => !self.model.has_remote_rigid_rotor(),
+            Algorithm::ElasticInverse => !self.series.is_empty() && self.orders.iter().any(|o| o.torque > 0),
+            _ => true,
+        }
+    }
+
+    /// How many derivatives of the motion the elastic inverse needs.
+    pub fn order(&self) -> usize {
+        Smoothness { joints: &self.orders, torque_derivatives: 0 }.order()
     }
 
     /// One call at state `i`.
@@ -171,7 +217,32 @@ impl<T: Scalar + 'static> Workload<T> {
                 let out = InverseDerivatives { tau_j: d, tau: e };
                 inverse_derivatives(model, state, accel, External::none(), &mut self.sensitivities, out)
             }
+            Algorithm::ElasticInverse => {
+                let smoothness = Smoothness { joints: &self.orders, torque_derivatives: 0 };
+                let motion = JointMotion { q, derivatives: &self.motion };
+                let [theta, deflection, deflection_rate] = &mut self.motors;
+                // A deflection of about a milliradian.
+                let now = Deflections { now: &self.start, step: T::from_f64(1e-3) };
+                let out = ElasticInverse { theta, tau_j: a, tau: b, deflection, deflection_rate };
+                let scratch = &mut self.series;
+                elastic_inverse::<T, MAX_COEFFICIENTS>(model, &smoothness, motion, External::none(), now, scratch, out)
+                    .unwrap_or_else(|e| panic!("{e}"));
+                Ok(())
+            }
         };
         done.unwrap_or_else(|e| panic!("{e}"));
     }
+}
+
+/// What the elastic inverse asks of every joint.
+fn orders(model: &Model<'_, f64>) -> Vec<JointOrders> {
+    let (n, nv) = (model.bodies().len(), model.nv());
+    let mut orders = vec![JointOrders::default(); n];
+    let scratch = SmoothnessScratch {
+        bodies: &mut vec![DerivativeScratch::new(); n],
+        numbers: &mut vec![0.0; smoothness_len(model)],
+        contains: &mut vec![Contains::default(); nv * nv],
+    };
+    required_smoothness(model, 0, VANISHING, scratch, &mut orders).unwrap_or_else(|e| panic!("{e}"));
+    orders
 }

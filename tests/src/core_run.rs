@@ -17,7 +17,7 @@ use gyroflex_testkit::{Lowered, State as Point};
 #[derive(Clone, Debug)]
 pub struct Core<T: Real> {
     lowered: Lowered<T::Param>,
-    dirty: bool,
+    pub(crate) dirty: bool,
 }
 
 impl<T: Real> Core<T> {
@@ -220,7 +220,7 @@ pub(crate) fn nan<T: Real>() -> T {
     T::from_f64(f64::NAN)
 }
 
-fn cast<T: Real>(x: &[f64]) -> Vec<T> {
+pub(crate) fn cast<T: Real>(x: &[f64]) -> Vec<T> {
     x.iter().map(|x| T::from_f64(*x)).collect()
 }
 

@@ -3,9 +3,13 @@
 
 mod core_run;
 mod derivative_run;
+mod elastic_motion;
+mod elastic_run;
 mod laws;
 mod velocity_run;
 
 pub use core_run::Core;
+pub use elastic_motion::{random_motion, settling};
+pub use elastic_run::{LinkMotion, MotorMotion, orders_of, smoothness};
 pub use laws::{Trial, for_trials, small};
 pub use velocity_run::Coriolis;

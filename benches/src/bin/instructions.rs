@@ -18,7 +18,7 @@ fn mark() {
 /// Counts every algorithm at the first `states` random states.
 fn cases<T: Scalar<Param = T> + 'static>(robot: &str, spec: &Spec, fidelity: Fidelity, scalar: &str, states: usize) {
     let mut workload = Workload::<T>::new(spec, fidelity);
-    for algorithm in Algorithm::ALL {
+    for algorithm in Algorithm::ALL.into_iter().filter(|a| *a != Algorithm::ElasticInverse) {
         // They are the same source for all scalars and models, and long to step through.
         if algorithm.is_derivative() && (fidelity != Fidelity::Complete || scalar == "f32" || robot == "tree14") {
             continue;
@@ -31,6 +31,20 @@ fn cases<T: Scalar<Param = T> + 'static>(robot: &str, spec: &Spec, fidelity: Fid
             workload.call(algorithm, i);
             mark();
             println!("{robot} {} {} {scalar}", algorithm.name(), fidelity.name());
+        }
+    }
+}
+
+/// Counts the elastic inverse of an arm.
+fn elastic_inverse<T: Scalar<Param = T> + 'static>(robot: &str, spec: &Spec, scalar: &str) {
+    for fidelity in [Fidelity::Complete, Fidelity::Reduced] {
+        let mut workload = Workload::<T>::new(spec, fidelity);
+        workload.call(Algorithm::ElasticInverse, 0);
+        for i in 0..2 {
+            mark();
+            workload.call(Algorithm::ElasticInverse, i);
+            mark();
+            println!("{robot} elastic_inverse{} {} {scalar}", workload.order(), fidelity.name());
         }
     }
 }
@@ -49,6 +63,10 @@ fn main() -> std::io::Result<()> {
         cases::<f64>("arm7", &arm, fidelity, "f64", 2);
     }
     cases::<f32>("arm7", &arm, Fidelity::Complete, "f32", 2);
+    for spec in [arm.clone(), arm.undamped()] {
+        elastic_inverse::<f64>("arm7", &spec, "f64");
+        elastic_inverse::<f32>("arm7", &spec, "f32");
+    }
     cases::<f64>("tree14", &generated(Shape::Tree, 14), Fidelity::Complete, "f64", 2);
     #[cfg(feature = "robots")]
     for fidelity in Fidelity::ALL {

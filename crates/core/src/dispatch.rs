@@ -128,6 +128,10 @@ impl<T: Fusible> Scalar for Fused<T> {
         Self(self.0.fused_mul_add(factor.0, addend.0))
     }
     #[inline(always)]
+    fn is_finite(self) -> bool {
+        self.0.is_finite()
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt())
     }

@@ -99,6 +99,10 @@ macro_rules! lanes_of {
                 self.zip3(factor, addend, Scalar::mul_add)
             }
             #[inline(always)]
+            fn is_finite(self) -> bool {
+                self.0.iter().all(|x| Scalar::is_finite(*x))
+            }
+            #[inline(always)]
             fn sqrt(self) -> Self {
                 self.each(Scalar::sqrt)
             }

@@ -72,11 +72,14 @@ pub mod control;
 pub mod dispatch;
 pub mod dynamics;
 pub mod integrate;
+mod jet;
 mod lanes;
 pub mod model;
+mod newton;
 pub mod scalar;
 pub mod spatial;
 mod trig;
 
+pub use jet::Jet;
 pub use lanes::Lanes;
 pub use scalar::Scalar;

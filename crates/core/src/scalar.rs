@@ -37,6 +37,8 @@ pub trait Scalar:
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
     }
+    /// Whether it is a number, and not infinite, in all its parts. What has no value, as a symbol, is.
+    fn is_finite(self) -> bool;
     /// Square root of a non-negative number.
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle [rad].
@@ -103,6 +105,10 @@ macro_rules! float_scalar {
             #[cfg(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")))]
             fn mul_add(self, factor: Self, addend: Self) -> Self {
                 self.fused_mul_add(factor, addend)
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                $float::is_finite(self)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {

@@ -11,6 +11,7 @@ pub mod error;
 pub mod eval;
 pub mod export;
 pub mod info;
+pub mod inverse;
 pub mod linearize;
 pub mod load;
 pub mod loads;

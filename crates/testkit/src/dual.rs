@@ -76,6 +76,9 @@ impl Scalar for Dual {
     fn from_f64(x: f64) -> Self {
         Self::new(x, 0.0)
     }
+    fn is_finite(self) -> bool {
+        self.value.is_finite() && self.slope.is_finite()
+    }
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.through(root, 0.5 / root)

@@ -89,6 +89,21 @@ impl Case {
         }
     }
 
+    /// Link positions at time `t` on the case's trajectory, and `order` derivatives: sums of sines.
+    pub fn trajectory(&self, t: f64, order: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let trajectory = &self.json["trajectory"];
+        let offset = numbers(&trajectory["offset"]);
+        let terms = |key: &str, i: usize| numbers(&trajectory[key][i]);
+        let derivative = |i: usize, k: usize| {
+            let sines = terms("amplitude", i).into_iter().zip(terms("omega", i)).zip(terms("phase", i));
+            let quarter = k as f64 * core::f64::consts::FRAC_PI_2;
+            sines.map(|((a, w), phase)| a * w.powi(k as i32) * (w * t + phase + quarter).sin()).sum::<f64>()
+        };
+        let n = offset.len();
+        let q = (0..n).map(|i| offset[i] + derivative(i, 0)).collect();
+        (q, (1..=order).map(|k| (0..n).map(|i| derivative(i, k)).collect()).collect())
+    }
+
     /// What a sample expects under a label. Without transmission errors the labels `consistent` and `paper` coincide, and
     /// the file may give the latter alone.
     pub fn expected<'s>(&self, sample: &'s Value, label: &str) -> &'s Value {

@@ -14,6 +14,7 @@ mod coriolis;
 mod crba;
 mod dense;
 mod drive_torque;
+mod elastic_inverse;
 mod energy;
 mod euler;
 mod forward;
@@ -27,6 +28,7 @@ mod pairs;
 mod regressor;
 mod rnea;
 mod singular;
+mod smoothness;
 mod tree;
 
 pub use aba::aba;
@@ -34,6 +36,10 @@ pub use aba_scratch::AbaScratch;
 pub use at_base::DerivativeScratch;
 pub use coriolis::{Bias, CoriolisMatrices, InertiaRates, bias, coriolis_matrices, gravity_torques, inertia_rates};
 pub use crba::{CrbaScratch, coupling, crba, reflected_inertia};
+pub use elastic_inverse::{
+    Deflections, ElasticInverse, ElasticInverseScratch, InverseError, JointMotion, MAX_COEFFICIENTS, elastic_inverse,
+    elastic_inverse_len,
+};
 pub use energy::{Energy, Power, energy, power};
 pub use euler::Rotation;
 pub use forward::{ForwardScratch, forward_dynamics, joint_space_len, matrix_len};
@@ -45,6 +51,9 @@ pub use operational::{OperationalSpace, Task, operational_len, operational_space
 pub use regressor::{PARAMETERS, Regressor, parameters, regressor};
 pub use rnea::{RneaScratch, rnea};
 pub use singular::SingularValues;
+pub use smoothness::{
+    Contains, JointOrders, Smoothness, SmoothnessScratch, VANISHING, required_smoothness, smoothness_len,
+};
 
 use crate::Scalar;
 use crate::model::{Model, SizeError};
@@ -135,5 +144,9 @@ fn check_external<P: Scalar, T>(model: &Model<P>, ext: &External<T>) -> Result<(
 }
 
 fn check_scratch<P: Scalar, S>(model: &Model<P>, scratch: &[S]) -> Result<(), SizeError> {
-    SizeError::check("scratch", scratch.len(), model.bodies.len())
+    check_scratch_len(scratch, model.bodies.len())
+}
+
+fn check_scratch_len<S>(scratch: &[S], needed: usize) -> Result<(), SizeError> {
+    SizeError::check("scratch", scratch.len(), needed)
 }

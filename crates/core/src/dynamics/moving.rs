@@ -58,8 +58,15 @@ impl<T: Scalar> Moving<T> {
     /// The body across a joint of velocity `qd` and acceleration `qdd` that sits where `self` is said.
     #[inline(always)]
     pub(super) fn across(self, x: &JointTransform<T>, joint: JointKind, qd: T, qdd: T) -> Self {
-        // ω = E ω_p,   α = E α_p,   a = E a_p, and what the joint adds:
+        // ω = E ω_p,   α = E α_p,   a = E a_p, and what the joint adds
         let (omega, ang, lin) = (x.rotate(self.omega), x.rotate(self.accel.ang), x.rotate(self.accel.lin));
+        Self::new(omega, Motion { ang, lin }).driven(joint, qd, qdd)
+    }
+
+    /// With what a joint about or along z adds, `self` being said in the axes beyond it.
+    #[inline(always)]
+    pub(super) fn driven(self, joint: JointKind, qd: T, qdd: T) -> Self {
+        let Self { omega, accel: Motion { ang, lin } } = self;
         match joint {
             // a += z q̈ + 2 ω × z q̇
             JointKind::Prismatic => {

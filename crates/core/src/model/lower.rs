@@ -140,14 +140,22 @@ impl RobotSpec<'_> {
 
     fn lower_spring(&self, spec: SpringSpec, knots: &mut [Knot<f64>], used: &mut usize) -> Result<Spring<f64>, Defect> {
         match spec {
-            SpringSpec::Polynomial { stiffness, cubic } => Ok(Spring { stiffness, cubic, first_knot: 0, knots: 0 }),
+            SpringSpec::Polynomial { stiffness, cubic } => {
+                Ok(Spring { stiffness, cubic, straight: cubic == 0.0, first_knot: 0, knots: 0 })
+            }
             SpringSpec::Table { first, len } => {
                 let table = &self.spring_tables[first..first + len];
                 let start = *used;
                 let written = super::spring::lower_table(table, knots.get_mut(start..).unwrap_or(&mut []))
                     .ok_or(Defect::TooFewKnots)?;
                 *used += written;
-                let mut spring = Spring { stiffness: 0.0, cubic: 0.0, first_knot: start as u16, knots: written as u16 };
+                let mut spring = Spring {
+                    stiffness: 0.0,
+                    cubic: 0.0,
+                    straight: false,
+                    first_knot: start as u16,
+                    knots: written as u16,
+                };
                 spring.stiffness = spring.slope(0.0, knots);
                 Ok(spring)
             }

@@ -7,6 +7,7 @@ mod friction;
 mod lower;
 #[allow(clippy::module_inception)]
 mod model;
+mod piece;
 mod spec;
 mod spring;
 mod validate;
@@ -16,6 +17,7 @@ pub use drive::{Drive, Elastic, Rotor, TransmissionError};
 pub use error::{Defect, ModelError};
 pub use friction::Friction;
 pub use model::{Model, SizeError};
+pub(crate) use piece::Piece;
 pub use spec::{
     BodySpec, DriveSpec, Fidelity, MountSpec, RobotSpec, RotorBody, RotorSpec, SpringSpec, TransmissionSpec,
 };

@@ -1,5 +1,6 @@
 //! The spring of a transmission.
 
+use super::piece::Piece;
 use crate::Scalar;
 
 /// `k(δ)`: a polynomial, or a table of knots in the model.
@@ -9,6 +10,8 @@ pub struct Spring<T> {
     pub stiffness: T,
     /// `K₃` [N m/rad³].
     pub cubic: T,
+    /// Whether the torque is `K δ` and nothing else; decided once, so that straight springs are inverted by a division.
+    pub straight: bool,
     /// Index of the table's first piece among the model's knots.
     pub first_knot: u16,
     /// Number of pieces; zero for a polynomial.
@@ -68,10 +71,8 @@ impl<T: Scalar> Spring<T> {
     /// Walks all pieces and keeps the last one that starts left of `deflection`: the same work for every deflection.
     #[inline(never)]
     fn in_table<F: Scalar<Param = T>>(&self, deflection: F, knots: &[Knot<T>]) -> SpringPoint<F> {
-        let first = self.first_knot as usize;
-        let table = knots.get(first..first + self.knots as usize).unwrap_or(&[]);
         let mut point = SpringPoint { torque: F::zero(), slope: F::zero(), energy: F::zero() };
-        for (i, knot) in table.iter().enumerate() {
+        for (i, knot) in self.table(knots).iter().enumerate() {
             let here = knot.at(deflection);
             let before = if i == 0 { here } else { point };
             let start = F::from_param(knot.start);
@@ -85,12 +86,85 @@ impl<T: Scalar> Spring<T> {
         point
     }
 
+    /// The pieces of a table; none of a polynomial.
+    #[inline(always)]
+    fn table<'k>(&self, knots: &'k [Knot<T>]) -> &'k [Knot<T>] {
+        let first = usize::from(self.first_knot);
+        knots.get(first..first + usize::from(self.knots)).unwrap_or(&[])
+    }
+
+    /// The polynomial `k` that the torque is around `deflection`.
+    #[inline(always)]
+    pub(crate) fn piece_at<F: Scalar<Param = T>>(&self, deflection: F, knots: &[Knot<T>]) -> Piece<F> {
+        let mut piece = self.whole();
+        for (i, knot) in self.table(knots).iter().enumerate() {
+            let here = knot.piece();
+            piece = if i == 0 { here } else { Piece::select_less(deflection, here.start, piece, here) };
+        }
+        piece
+    }
+
+    /// The deflection at which the torque is `torque` [rad], and the polynomial there: `k⁻¹`. Not a number if the search does not
+    /// come near it, which takes a torque of hundreds of times what bends the spring out of its straight part.
+    #[inline(always)]
+    pub(crate) fn deflection<F: Scalar<Param = T>>(&self, torque: F, knots: &[Knot<T>]) -> (F, Piece<F>) {
+        let whole = self.whole();
+        if self.straight {
+            return (torque / whole.c[1], whole);
+        }
+        if self.knots == 0 {
+            // At least as stiff as its straight part.
+            let reach = torque / whole.c[1];
+            let zero = F::zero();
+            let (low, high) = (reach.select_less(zero, reach, zero), reach.select_less(zero, zero, reach));
+            return (whole.solve(torque, low, high), whole);
+        }
+        // The piece whose torques reach from below to above: a table increases. Left of the first and right of the last it is straight.
+        let table = self.table(knots);
+        let (mut piece, mut low, mut high) = (whole, F::zero(), F::zero());
+        for (i, knot) in table.iter().enumerate() {
+            let here = knot.piece::<F>();
+            let straight = (torque - here.c[0]) / here.c[1];
+            let width = table.get(i + 1).map_or(straight, |next| F::from_param(next.start) - here.start);
+            let (left, right) = if i == 0 { (straight, width) } else { (F::zero(), width) };
+            if i == 0 {
+                (piece, low, high) = (here, left, right);
+            } else {
+                let first = here.c[0];
+                low = torque.select_less(first, low, left);
+                high = torque.select_less(first, high, right);
+                piece = Piece::select_less(torque, first, piece, here);
+            }
+        }
+        (piece.start + piece.solve(torque, low, high), piece)
+    }
+
+    /// A polynomial spring as one piece.
+    #[inline(always)]
+    fn whole<F: Scalar<Param = T>>(&self) -> Piece<F> {
+        let (k, k3) = (F::from_param(self.stiffness), F::from_param(self.cubic));
+        Piece { start: F::zero(), c: [F::zero(), k, F::zero(), k3] }
+    }
+
     pub(crate) fn map<U>(self, mut f: impl FnMut(T) -> U) -> Spring<U> {
-        Spring { stiffness: f(self.stiffness), cubic: f(self.cubic), first_knot: self.first_knot, knots: self.knots }
+        Spring {
+            stiffness: f(self.stiffness),
+            cubic: f(self.cubic),
+            straight: self.straight,
+            first_knot: self.first_knot,
+            knots: self.knots,
+        }
     }
 }
 
 impl<T: Scalar> Knot<T> {
+    #[inline(always)]
+    fn piece<F: Scalar<Param = T>>(&self) -> Piece<F> {
+        let [c0, c1, c2, c3] = self.c;
+        let p = F::from_param;
+        Piece { start: p(self.start), c: [p(c0), p(c1), p(c2), p(c3)] }
+    }
+
     #[inline(always)]
     fn at<F: Scalar<Param = T>>(&self, deflection: F) -> SpringPoint<F> {
         let x = deflection - F::from_param(self.start);
@@ -154,7 +228,7 @@ pub(crate) fn lower_table(table: &[[f64; 2]], knots: &mut [Knot<f64>]) -> Option
         knots[i + 1] = Knot { start: x, c, energy };
     }
     // Energy is counted from the unloaded spring.
-    let whole = Spring { stiffness: 0.0, cubic: 0.0, first_knot: 0, knots: (n + 1) as u16 };
+    let whole = Spring { stiffness: 0.0, cubic: 0.0, straight: false, first_knot: 0, knots: (n + 1) as u16 };
     let at_rest = whole.energy(0.0, knots);
     for knot in &mut knots[..n + 1] {
         knot.energy -= at_rest;
