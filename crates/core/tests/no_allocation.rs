@@ -2,6 +2,8 @@
 
 mod common;
 use common::{Lowered, drive, elastic, link};
+use gyroflex::control::reference::*;
+use gyroflex::control::*;
 use gyroflex::dynamics::*;
 use gyroflex::integrate::*;
 use gyroflex::model::*;
@@ -153,4 +155,39 @@ fn neither_derivatives_nor_matrices_allocate() {
     });
     assert_eq!(count, 0);
     assert!(d.iter().chain(&e).chain(&y).chain(&inertia).all(|x: &f64| x.is_finite()));
+}
+
+#[test]
+fn neither_references_nor_filters_nor_shapers_allocate() {
+    let mut memory = [0.0; 1000];
+    let [mut sum, mut out] = [[0.0; 12]; 2];
+    let count = allocations(|| {
+        let sine = [Sine { amplitude: 0.4, frequency: 1.2, phase: 0.1 }];
+        let steps = [Step { time: 0.1, to: 1.0 }];
+        let polynomial = PointToPoint::new(0.0, 1.0, 0.0, 1.0, 6).unwrap();
+        let minimum_time = MinimumTime::<_, 6>::new(0.0, 1.0, 0.0, &[1.0, 4.0, 30.0, 500.0]).unwrap();
+        let shaper = Shaper::<_, 9>::new(ShaperKind::Zvd, Mode { frequency: 3.0, damping_ratio: 0.02 }).unwrap();
+        let shaper =
+            shaper.and(ShaperKind::Ei { tolerance: 0.05 }, Mode { frequency: 8.0, damping_ratio: 0.0 }).unwrap();
+        let references: [&dyn Reference<f64>; 6] = [
+            &Sines { offset: 0.2, terms: &sine },
+            &polynomial,
+            &minimum_time,
+            &Piecewise::new(&[0.0, 1.0], &[0.0, 1.0, 2.0], Some(2)).unwrap(),
+            &FilteredStep::new(0.0, &steps, 8, 5.0).unwrap(),
+            &Shaped { reference: &polynomial, shaper: &shaper },
+        ];
+        for reference in references {
+            reference.derivatives(0.4, &mut out);
+            out.iter().zip(&mut sum).for_each(|(x, sum)| *sum += x);
+        }
+        let mut filter = LowPass::<_, 8>::new(5.0, 0.0).unwrap();
+        let mut online = OnlineShaper::new(&shaper, 1e-3, 0.0, &mut memory).unwrap();
+        for _ in 0..100 {
+            filter.advance(online.shape(1.0), 1e-3);
+            filter.derivatives(1.0, &mut out);
+        }
+    });
+    assert_eq!(count, 0);
+    assert!(sum.iter().chain(&out).all(|x| x.is_finite() && *x != 0.0));
 }

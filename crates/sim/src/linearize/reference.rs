@@ -4,7 +4,7 @@ use super::{KeptFriction, Linearizer, OperatingPoint};
 use crate::coordinates::Coordinates;
 use crate::equilibrium::motor_position;
 use crate::error::{Error, ErrorKind, Warning};
-use crate::reference::{Trajectory, references};
+use crate::reference::References;
 use crate::robot::Robot;
 use crate::scenario::ScenarioFile;
 use crate::simulate::StateVec;
@@ -24,7 +24,7 @@ const DT: f64 = 1e-4;
 pub struct ReferenceMotion {
     linearizer: Linearizer,
     joints: Coordinates,
-    references: Vec<Trajectory>,
+    references: References,
     duration: f64,
     /// What the user should know.
     pub warnings: Vec<Warning>,
@@ -59,7 +59,9 @@ impl ReferenceMotion {
         let joints = Coordinates::of(&robot);
         let mut warnings = Vec::new();
         let q0 = joints.spread(&file.scenario.initial.q, &file.keys, "initial.q")?;
-        let references = references(file, &joints, &q0, &mut warnings)?;
+        // A shaper's modes are those of the scenario's own model.
+        robot.fidelity = file.scenario.model.map_or(robot.fidelity, Into::into);
+        let references = References::of(file, &robot, &joints, &q0, &mut warnings)?;
         if !file.scenario.wrenches.is_empty() {
             warnings.push(Warning {
                 file: file.keys.locate("wrenches"),
@@ -67,8 +69,7 @@ impl ReferenceMotion {
                 message: "they do not act on the linear model".to_owned(),
             });
         }
-        let model = fidelity.or(file.scenario.model.map(Into::into)).unwrap_or(robot.fidelity);
-        let linearizer = Linearizer::new(&robot, model, kept)?;
+        let linearizer = Linearizer::new(&robot, fidelity.unwrap_or(robot.fidelity), kept)?;
         Ok(Self { linearizer, joints, references, duration: file.scenario.duration, warnings })
     }
 
@@ -105,8 +106,8 @@ impl ReferenceMotion {
         let nv = self.linearizer.layout.nv();
         let zeros = || vec![0.0; nv];
         let (mut q, mut qd, mut qdd) = (zeros(), zeros(), zeros());
-        for (joint, trajectory) in self.joints.joints.iter().zip(&self.references) {
-            let point = trajectory.at(t);
+        for (i, joint) in self.joints.joints.iter().enumerate() {
+            let point = self.references.point(i, t);
             (q[joint.q], qd[joint.v], qdd[joint.v]) = (point.q, point.qd, point.qdd);
         }
         let (mut tau_j, mut tau) = (zeros(), zeros());

@@ -1,13 +1,20 @@
 //! References from a CSV file: a column `time` and a column per joint.
 
-use super::Spline;
+use super::{Ends, SmoothSpline, Spline, Trajectory};
 use crate::coordinates::Coordinates;
 use crate::error::{Error, ErrorKind};
 use crate::load::yaml::Keys;
 use crate::robot::SourceFile;
 
-/// Reads one spline per joint that has a column.
-pub(super) fn read(source: &SourceFile, joints: &Coordinates) -> Result<Vec<Option<Spline>>, Error> {
+/// A spline through a column, and the times it covers [s].
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    pub(super) trajectory: Trajectory,
+    pub(super) span: (f64, f64),
+}
+
+/// Reads one spline of this degree per joint that has a column.
+pub(super) fn read(source: &SourceFile, joints: &Coordinates, degree: usize) -> Result<Vec<Option<Column>>, Error> {
     let file = source.name.as_str();
     let fail = |element: String, problem: String, remedy: &str| Error {
         kind: ErrorKind::Scenario,
@@ -67,10 +74,20 @@ pub(super) fn read(source: &SourceFile, joints: &Coordinates) -> Result<Vec<Opti
     for entry in columns {
         out.push(match entry {
             None => None,
-            Some(i) => Some(Spline::new(column(time), column(i)).ok_or_else(|| {
+            Some(i) => Some(through(column(time), column(i), degree).ok_or_else(|| {
                 fail(String::new(), "it has fewer than two rows".to_string(), "give at least two rows")
             })?),
         });
     }
     Ok(out)
+}
+
+/// The spline of this degree through points; `None` if there are fewer than two.
+fn through(times: Vec<f64>, values: Vec<f64>, degree: usize) -> Option<Column> {
+    let span = (*times.first()?, *times.last()?);
+    let trajectory = match degree {
+        3 => Trajectory::Spline(Spline::new(times, values)?),
+        _ => Trajectory::SmoothSpline(SmoothSpline::new(&times, &values, degree, Ends::Nearest)?),
+    };
+    Some(Column { trajectory, span })
 }

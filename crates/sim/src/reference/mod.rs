@@ -1,14 +1,19 @@
-//! Reference trajectories: position, velocity and acceleration of a joint over time.
+//! Reference trajectories: position of a joint over time, with its derivatives.
 
 mod build;
 mod csv;
+mod references;
+mod shaping;
+mod smooth_spline;
 mod spline;
 
-pub use build::references;
+pub use gyroflex::control::reference::Reference;
+pub use references::References;
+pub use smooth_spline::{Ends, SmoothSpline};
 pub use spline::Spline;
 
 use crate::scenario::SineTerm;
-use std::f64::consts::TAU;
+use gyroflex::control::reference::{FilteredStep, MinimumTime, PointToPoint, Sine, Step};
 
 /// A reference at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,7 +26,10 @@ pub struct Point {
     pub qdd: f64,
 }
 
-/// The motion one joint is to follow.
+/// The most derivatives that can be bounded.
+pub const MAX_LIMITS: usize = 16;
+
+/// The motion one joint is to follow; its derivatives of any order are those of a [`Reference`].
 #[derive(Clone, Debug)]
 pub enum Trajectory {
     /// Stays at a position [rad or m].
@@ -42,58 +50,87 @@ pub enum Trajectory {
         /// `ω` [rad/s].
         omega: f64,
     },
-    /// Fifth degree from rest to rest.
-    Quintic {
+    /// A polynomial from rest to rest.
+    Polynomial(PointToPoint<f64>),
+    /// A step behind a low-pass filter.
+    FilteredStep {
         /// Position before [rad or m].
         from: f64,
-        /// Position after [rad or m].
-        to: f64,
-        /// When the motion starts [s].
-        start: f64,
-        /// How long it takes [s].
-        duration: f64,
+        /// The step.
+        step: Step<f64>,
+        /// Number of first-order lags.
+        order: usize,
+        /// Where the whole filter is 3 dB down [Hz].
+        cutoff: f64,
     },
+    /// From rest to rest as fast as bounds allow.
+    MinimumTime(Box<MinimumTime<f64, MAX_LIMITS>>),
     /// Cubic spline through points.
     Spline(Spline),
+    /// Spline of higher degree through points.
+    SmoothSpline(SmoothSpline),
 }
 
 impl Trajectory {
     /// Position, velocity and acceleration at time `t` [s].
     pub fn at(&self, t: f64) -> Point {
-        match self {
-            Self::Hold(q) => Point { q: *q, ..Point::default() },
-            Self::Sines { offset, terms } => {
-                let mut point = Point { q: *offset, ..Point::default() };
-                for term in terms {
-                    let omega = TAU * term.frequency;
-                    let (s, c) = (omega * t + term.phase).sin_cos();
-                    point.q += term.amplitude * s;
-                    point.qd += term.amplitude * omega * c;
-                    point.qdd -= term.amplitude * omega * omega * s;
-                }
-                point
-            }
-            Self::Zhao { offset, amplitude: a, omega } => {
-                let (s, c) = (omega * t).sin_cos();
-                let e = (-a * omega * t).exp();
-                Point {
-                    q: offset + a * a * c + a * s + e,
-                    qd: a * omega * (c - a * s - e),
-                    qdd: a * omega * omega * (a * e - a * c - s),
-                }
-            }
-            Self::Quintic { from, to, start, duration } => quintic(*from, *to, (t - start) / duration, *duration),
-            Self::Spline(spline) => spline.at(t),
-        }
+        let mut out = [0.0; 3];
+        self.derivatives(t, &mut out);
+        Point::from(out)
     }
 }
 
-/// `from + (to − from)(10 s³ − 15 s⁴ + 6 s⁵)` with `s` from 0 to 1 over `duration`.
-fn quintic(from: f64, to: f64, s: f64, duration: f64) -> Point {
-    let (s, d) = (s.clamp(0.0, 1.0), to - from);
-    Point {
-        q: from + d * s * s * s * (10.0 + s * (6.0 * s - 15.0)),
-        qd: d / duration * 30.0 * s * s * (1.0 - s) * (1.0 - s),
-        qdd: d / (duration * duration) * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s),
+impl From<[f64; 3]> for Point {
+    fn from([q, qd, qdd]: [f64; 3]) -> Self {
+        Self { q, qd, qdd }
+    }
+}
+
+impl Reference<f64> for Trajectory {
+    fn add_derivatives(&self, t: f64, weight: f64, out: &mut [f64]) {
+        let mut add_position = |q: f64| {
+            if let Some(first) = out.first_mut() {
+                *first += weight * q;
+            }
+        };
+        match self {
+            Self::Hold(q) => add_position(*q),
+            Self::Sines { offset, terms } => {
+                add_position(*offset);
+                for &SineTerm { amplitude, frequency, phase } in terms {
+                    Sine { amplitude, frequency, phase }.add_derivatives(t, weight, out);
+                }
+            }
+            Self::Zhao { offset, amplitude: a, omega } => {
+                add_position(*offset);
+                let (s, c) = (omega * t).sin_cos();
+                let (mut power, mut decay) = (weight, weight * (-a * omega * t).exp());
+                // A derivative is a quarter of a turn ahead.
+                for (slot, [s, c]) in out.iter_mut().zip([[s, c], [c, -s], [-s, -c], [-c, s]].into_iter().cycle()) {
+                    *slot += power * a * (a * c + s) + decay;
+                    (power, decay) = (power * omega, -decay * a * omega);
+                }
+            }
+            Self::Polynomial(polynomial) => polynomial.add_derivatives(t, weight, out),
+            Self::FilteredStep { from, step, order, cutoff } => {
+                if let Some(reference) = FilteredStep::new(*from, std::slice::from_ref(step), *order, *cutoff) {
+                    reference.add_derivatives(t, weight, out);
+                }
+            }
+            Self::MinimumTime(plan) => plan.add_derivatives(t, weight, out),
+            Self::Spline(spline) => spline.add_derivatives(t, weight, out),
+            Self::SmoothSpline(spline) => spline.add_derivatives(t, weight, out),
+        }
+    }
+
+    fn smoothness(&self) -> Option<usize> {
+        match self {
+            Self::Hold(_) | Self::Sines { .. } | Self::Zhao { .. } => None,
+            Self::Polynomial(polynomial) => polynomial.smoothness(),
+            Self::FilteredStep { order, .. } => Some(*order),
+            Self::MinimumTime(plan) => plan.smoothness(),
+            Self::Spline(spline) => spline.smoothness(),
+            Self::SmoothSpline(spline) => spline.smoothness(),
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! A cubic spline through points in time.
 
-use super::Point;
+use gyroflex::control::reference::Reference;
 
 /// A twice continuously differentiable function through points, cubic between them; constant outside.
 ///
@@ -33,23 +33,36 @@ impl Spline {
     pub fn span(&self) -> (f64, f64) {
         (self.times[0], self.times[self.times.len() - 1])
     }
+}
 
-    /// Position, velocity and acceleration at time `t`.
-    pub fn at(&self, t: f64) -> Point {
+impl Reference<f64> for Spline {
+    fn add_derivatives(&self, t: f64, weight: f64, out: &mut [f64]) {
         let n = self.times.len();
         let (first, last) = self.span();
-        if t < first || t > last {
-            return Point { q: self.values[if t < first { 0 } else { n - 1 }], ..Point::default() };
-        }
-        let i = self.times.partition_point(|&x| x <= t).clamp(1, n - 1) - 1;
+        let outside = [self.values[if t < first { 0 } else { n - 1 }], 0.0, 0.0, 0.0];
+        let all = if t < first || t > last { outside } else { self.within(t) };
+        out.iter_mut().zip(all).for_each(|(slot, x)| *slot += weight * x);
+    }
+
+    /// Within its span; where it holds before and after, the velocity jumps.
+    fn smoothness(&self) -> Option<usize> {
+        Some(3)
+    }
+}
+
+impl Spline {
+    /// Position and three derivatives at a time of its span.
+    fn within(&self, t: f64) -> [f64; 4] {
+        let i = self.times.partition_point(|&x| x <= t).clamp(1, self.times.len() - 1) - 1;
         let h = self.times[i + 1] - self.times[i];
         let (b, a) = ((t - self.times[i]) / h, (self.times[i + 1] - t) / h);
         let (y0, y1, m0, m1) = (self.values[i], self.values[i + 1], self.curvatures[i], self.curvatures[i + 1]);
-        Point {
-            q: a * y0 + b * y1 + ((a * a * a - a) * m0 + (b * b * b - b) * m1) * h * h / 6.0,
-            qd: (y1 - y0) / h + ((3.0 * b * b - 1.0) * m1 - (3.0 * a * a - 1.0) * m0) * h / 6.0,
-            qdd: a * m0 + b * m1,
-        }
+        [
+            a * y0 + b * y1 + ((a * a * a - a) * m0 + (b * b * b - b) * m1) * h * h / 6.0,
+            (y1 - y0) / h + ((3.0 * b * b - 1.0) * m1 - (3.0 * a * a - 1.0) * m0) * h / 6.0,
+            a * m0 + b * m1,
+            (m1 - m0) / h,
+        ]
     }
 }
 

@@ -2,14 +2,17 @@
 
 mod controller;
 mod integrator;
+mod motion;
 mod read;
 mod reference;
+mod shaper;
 mod validate;
 
 pub use controller::{Controller, Gains, RigidModel};
 pub use integrator::Integrator;
 pub use read::ScenarioFile;
 pub use reference::{JointReference, References, SineTerm};
+pub use shaper::{InputShaper, ModesOf, Motors, ShaperMode, ShaperModes, ShaperType};
 
 use crate::error::{Error, ErrorKind};
 use crate::load::yaml::Keys;
@@ -39,6 +42,9 @@ pub struct Scenario {
     /// The motion to follow: a reference per joint name, `default` for joints not named, or `csv` for a file with all of them.
     #[serde(default)]
     pub reference: References,
+    /// A shaper that all references pass, so that they leave no vibration behind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shaper: Option<InputShaper>,
     /// What drives the motors.
     #[serde(default)]
     pub controller: Controller,

@@ -1,6 +1,6 @@
 //! What can be wrong with a scenario before any robot is loaded.
 
-use super::{Controller, Gains, Initial, Integrator, JointReference, JointValues, Scenario, Wrench, fault};
+use super::{Controller, Gains, Initial, Integrator, JointValues, Scenario, Wrench, fault};
 use crate::error::Error;
 use crate::load::yaml::Keys;
 
@@ -15,9 +15,8 @@ impl Scenario {
         check.finite("gravity", self.gravity.iter().flatten())?;
         check.positive("log.rate", self.log.rate)?;
         check.initial(&self.initial)?;
-        for (name, reference) in &self.reference.joints {
-            check.reference(&format!("reference.{name}"), reference)?;
-        }
+        check.references(&self.reference)?;
+        self.shaper.iter().try_for_each(|shaper| check.shaper(shaper))?;
         check.controller(&self.controller)?;
         for (i, wrench) in self.wrenches.iter().enumerate() {
             check.wrench(&format!("wrenches[{i}]"), wrench)?;
@@ -27,23 +26,23 @@ impl Scenario {
 }
 
 /// Checks of one file.
-struct Check<'a> {
+pub(super) struct Check<'a> {
     keys: &'a Keys,
 }
 
 impl Check<'_> {
-    fn fail(&self, key: &str, problem: String, remedy: &str) -> Result<(), Error> {
+    pub(super) fn fail(&self, key: &str, problem: String, remedy: &str) -> Result<(), Error> {
         Err(fault(self.keys, key, problem, remedy))
     }
 
-    fn finite<'a>(&self, key: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<(), Error> {
+    pub(super) fn finite<'a>(&self, key: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<(), Error> {
         match values.into_iter().find(|v| !v.is_finite()) {
             Some(v) => self.fail(key, format!("{v} is not a finite number"), "give a finite number"),
             None => Ok(()),
         }
     }
 
-    fn positive(&self, key: &str, value: f64) -> Result<(), Error> {
+    pub(super) fn positive(&self, key: &str, value: f64) -> Result<(), Error> {
         if value.is_finite() && value > 0.0 {
             return Ok(());
         }
@@ -77,28 +76,6 @@ impl Check<'_> {
             self.finite("initial.base.twist", &base.twist)?;
         }
         Ok(())
-    }
-
-    fn reference(&self, key: &str, reference: &JointReference) -> Result<(), Error> {
-        match reference {
-            JointReference::Hold { at } => self.finite(key, at.iter()),
-            JointReference::Sine { amplitude, frequency, phase, offset } => {
-                self.finite(key, [amplitude, frequency, phase, offset])
-            }
-            JointReference::Sines { offset, terms } => {
-                self.finite(key, [offset])?;
-                terms.iter().try_for_each(|t| self.finite(key, [&t.amplitude, &t.frequency, &t.phase]))
-            }
-            JointReference::Zhao { amplitude, omega, offset } => {
-                self.positive(&format!("{key}.amplitude"), *amplitude)?;
-                self.positive(&format!("{key}.omega"), *omega)?;
-                self.finite(key, [offset])
-            }
-            JointReference::Quintic { from, to, start, duration } => {
-                self.finite(key, [from, to, start])?;
-                self.positive(&format!("{key}.duration"), *duration)
-            }
-        }
     }
 
     fn controller(&self, controller: &Controller) -> Result<(), Error> {

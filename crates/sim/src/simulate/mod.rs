@@ -18,7 +18,7 @@ use crate::loads::Loads;
 use crate::modes::{self, Modes};
 use crate::ode::Adaptive;
 use crate::record::RunInfo;
-use crate::reference::{Point, Trajectory, references};
+use crate::reference::{Point, References};
 use crate::robot::Robot;
 use crate::scenario::{Integrator, ScenarioFile};
 use gyroflex::spatial::Vec3;
@@ -31,7 +31,7 @@ pub struct Simulation {
     file: ScenarioFile,
     joints: Coordinates,
     dynamics: Dynamics,
-    references: Vec<Trajectory>,
+    references: References,
     points: Vec<Point>,
     control: Control,
     loads: Loads,
@@ -67,7 +67,7 @@ impl Simulation {
         let joints = Coordinates::of(&robot);
         let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
         let q0 = joints.spread(&scenario.initial.q, &file.keys, "initial.q")?;
-        let references = references(file, &joints, &q0, &mut warnings)?;
+        let references = References::of(file, &robot, &joints, &q0, &mut warnings)?;
         let mut loads = Loads::new(&scenario.wrenches, &robot, &file.keys)?;
         let control = Control::new(&scenario.controller, &robot, &joints, &file.keys)?;
         let initial = start::initial_state(file, &joints, &references, &mut dynamics, &mut loads)?;
@@ -110,6 +110,11 @@ impl Simulation {
     /// The joints of one degree of freedom, in the order of every vector that is logged.
     pub fn coordinates(&self) -> &Coordinates {
         &self.joints
+    }
+
+    /// What the joints are to follow.
+    pub fn references(&self) -> &References {
+        &self.references
     }
 
     /// Natural modes and decay at the initial pose.
@@ -160,6 +165,11 @@ impl Simulation {
             add("control_rate", rate.to_string());
         }
         add("log_rate", scenario.log.rate.to_string());
+        if scenario.shaper.is_some() {
+            let impulses = self.references.shaper().impulses().iter();
+            let text: Vec<_> = impulses.map(|i| format!("{} at {} s", i.amplitude, i.delay)).collect();
+            add("shaper_impulses", text.join(", "));
+        }
         if let Some(mode) = self.modes.fastest() {
             add("fastest_mode_hz", mode.frequency.to_string());
         }

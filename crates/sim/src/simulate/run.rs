@@ -110,9 +110,7 @@ impl Simulation {
         if !instant.control && !instant.log {
             return Ok(());
         }
-        for (point, reference) in self.points.iter_mut().zip(&self.references) {
-            *point = reference.at(instant.t);
-        }
+        self.references.points(instant.t, &mut self.points);
         if instant.control {
             self.control.tick(&mut self.dynamics, &self.points, self.state.view(), &mut self.tau)?;
         }

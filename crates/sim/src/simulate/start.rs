@@ -5,7 +5,7 @@ use crate::dynamics::Dynamics;
 use crate::equilibrium::Equilibrium;
 use crate::error::Error;
 use crate::loads::Loads;
-use crate::reference::Trajectory;
+use crate::reference::References;
 use crate::scenario::{ScenarioFile, fault};
 use gyroflex::dynamics::State;
 use gyroflex::integrate::StateMut;
@@ -44,7 +44,7 @@ impl StateVec {
 pub(super) fn initial_state(
     file: &ScenarioFile,
     joints: &Coordinates,
-    references: &[Trajectory],
+    references: &References,
     dynamics: &mut Dynamics,
     loads: &mut Loads,
 ) -> Result<StateVec, Error> {
@@ -68,7 +68,7 @@ pub(super) fn initial_state(
     let theta = joints.spread(&initial.theta, keys, "initial.theta")?;
     let thetad = joints.spread(&initial.thetad, keys, "initial.thetad")?;
     for (i, joint) in joints.joints.iter().enumerate() {
-        let start = references[i].at(0.0);
+        let start = references.point(i, 0.0);
         state.q[joint.q] = q[i].unwrap_or(start.q);
         state.qd[joint.v] = qd[i].unwrap_or(start.qd);
         state.thetad[joint.v] = state.qd[joint.v];

@@ -5,7 +5,7 @@ use gyroflex::dynamics::{External, Forward};
 use gyroflex_sim::coordinates::Coordinates;
 use gyroflex_sim::linearize::{KeptFriction, OperatingPoint, ReferenceMotion};
 use gyroflex_sim::load::{Disk, LoadOptions, load};
-use gyroflex_sim::reference::references;
+use gyroflex_sim::reference::References;
 use gyroflex_sim::{Dynamics, ErrorKind, Fidelity, Robot, ScenarioFile};
 use std::path::Path;
 
@@ -94,7 +94,7 @@ fn on_a_reference_a_robot_accelerates_as_the_reference_does() {
     let (robot, file) = tracking();
     let joints = Coordinates::of(&robot);
     let q0 = joints.spread(&file.scenario.initial.q, &file.keys, "initial.q").expect("it fits");
-    let reference = references(&file, &joints, &q0, &mut Vec::new()).expect("it fits");
+    let reference = References::of(&file, &robot, &joints, &q0, &mut Vec::new()).expect("it fits");
     // With elastic joints but for the dampers, which the motors' positions leave out.
     for (model, tolerance) in [(Fidelity::Rigid, 1e-9), (Fidelity::RigidReflected, 1e-9), (Fidelity::Complete, 0.05)] {
         let mut motion = ReferenceMotion::new(&robot, &file, Some(model), KeptFriction::All).expect("it fits");
@@ -102,7 +102,7 @@ fn on_a_reference_a_robot_accelerates_as_the_reference_does() {
         for t in [0.4, 0.9, 1.5] {
             let point = motion.at(t).expect("it is within");
             let [qdd, _] = accelerations(&mut dynamics, &point);
-            let now: Vec<_> = reference.iter().map(|r| r.at(t)).collect();
+            let now: Vec<_> = (0..joints.len()).map(|i| reference.point(i, t)).collect();
             assert_close("q", &point.state.q, now.iter().map(|p| &p.q), 1e-15);
             assert_close("qd", &point.state.qd, now.iter().map(|p| &p.qd), 1e-15);
             assert_close(&format!("{model:?} at {t} s"), &qdd, now.iter().map(|p| &p.qdd), tolerance);

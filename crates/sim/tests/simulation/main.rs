@@ -5,6 +5,7 @@ mod controllers;
 mod equilibria;
 mod integration;
 mod logs;
+mod references;
 mod refusals;
 mod robots;
 mod samples;
