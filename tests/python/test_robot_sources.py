@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
 
 import gyroflex
 import numpy as np
@@ -36,6 +37,12 @@ R3_MASSES = [
     [(5.2, (0, 0, 0))],
     [(0.5, (0.05, 0.05, 0.05)), (15.0, (0.1, 0.25, 0.1))],
 ]
+
+# Lightweight arm: axes and where the joints stand, masses with their places from joint to joint, published N² J.
+LWR_AXES = "zyzyzyz"
+LWR_STEPS = [0.1, 0.1, 0.19, 0.19, 0.175, 0.175, 0.035, 0.035]
+LWR_MASSES = [2.5, 3.0, 2.7, 2.4, 2.2, 1.9, 1.5, 0.8]
+LWR_REFLECTED = [1.836, 4.447, 3.242, 1.817, 1.392, 1.402, 1.392]
 
 
 def turn(axis: str, angle: complex) -> np.ndarray:
@@ -93,6 +100,16 @@ def r3_potential(q: np.ndarray) -> np.ndarray:
     return energy
 
 
+def lwr_potential(q: np.ndarray) -> np.ndarray:
+    """Potential energy of the lightweight arm: every mass half-way to the next joint. The foot has none."""
+    r, height, energy = np.eye(3, dtype=complex), LWR_STEPS[0], 0.0
+    for axis, angle, step, mass in zip(LWR_AXES, q, LWR_STEPS[1:], LWR_MASSES[1:], strict=True):
+        r = r @ turn(axis, angle)
+        energy = energy + GRAVITY * mass * (height + r[2, 2] * step / 2)
+        height = height + r[2, 2] * step
+    return energy
+
+
 def holding_torques(robot: gyroflex.Robot, q: np.ndarray) -> np.ndarray:
     still = np.zeros(robot.nv)
     return robot.inverse_dynamics(q, still, still, model="rigid")[1]
@@ -140,3 +157,24 @@ def test_manutec_start_pose_takes_the_published_torques() -> None:
     robot = gyroflex.Robot.load(ROBOTS / "manutec_r3" / "robot.yaml")
     torques = holding_torques(robot, np.deg2rad([-60.0, 20.0, 90.0, 0.0, -110.0, 0.0]))
     np.testing.assert_allclose(torques[1:3], [-460.5734, -256.4001], rtol=0, atol=5e-5)
+
+
+def test_lwr_is_as_long_and_as_heavy_as_the_paper_says() -> None:
+    robot = gyroflex.Robot.load(ROBOTS / "lwr" / "robot.yaml")
+    assert robot.placement("tool", np.zeros(7))[2, 3] == pytest.approx(1.0, abs=1e-15)
+    masses = [float(m.attrib["value"]) for m in ElementTree.parse(ROBOTS / "lwr" / "lwr.urdf").iter("mass")]
+    assert masses == LWR_MASSES
+    assert sum(masses) == pytest.approx(17.0, abs=1e-12)
+
+
+def test_lwr_has_the_published_reflected_inertias() -> None:
+    robot = gyroflex.Robot.load(ROBOTS / "lwr" / "robot.yaml")
+    q = np.zeros(7)
+    reflected = np.diag(robot.mass_matrix(q, model="rigid_reflected") - robot.mass_matrix(q, model="reduced"))
+    np.testing.assert_allclose(reflected, LWR_REFLECTED, rtol=0, atol=5e-4)
+
+
+def test_lwr_is_held_by_the_slope_of_its_potential_energy() -> None:
+    robot = gyroflex.Robot.load(ROBOTS / "lwr" / "robot.yaml")
+    for q in np.random.default_rng(2).uniform(-3.0, 3.0, (100, 7)):
+        np.testing.assert_allclose(holding_torques(robot, q), derivative(lwr_potential, q), rtol=0, atol=1e-11)

@@ -14,9 +14,11 @@ fn robot(file: &str) -> Robot {
     load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-const ALL: [&str; 6] = [
+const ALL: [&str; 8] = [
     "iiwa14/robot.yaml",
     "iiwa14/lossless.yaml",
+    "lwr/robot.yaml",
+    "lwr/undamped.yaml",
     "manutec_r3/robot.yaml",
     "planar_3r/robot.yaml",
     "puma560/robot.yaml",
@@ -65,6 +67,25 @@ fn manutec_r3_is_held_by_the_published_torques() {
         let held = Core::<f64>::new(&robot.spec(), fidelity).inverse(&s).tau_j;
         for (got, want) in [(held[1], -460.5734), (held[2], -256.4001)] {
             assert!((got - want).abs() < 5.001e-5, "{}: {got} for {want}", fidelity.name());
+        }
+    }
+}
+
+/// The axis of a rotor stands across the axis of the joint before, to the last bit and at every pose.
+#[test]
+fn neighbouring_rotors_of_the_lwr_do_not_couple_at_all() {
+    for file in ["lwr/robot.yaml", "lwr/undamped.yaml"] {
+        let robot = robot(file);
+        let model = robot.model(Fidelity::Complete).unwrap_or_else(|e| panic!("{e}"));
+        let mut dynamics = gyroflex_sim::Dynamics::new(model);
+        for seed in 0..20 {
+            let q = random_point(&robot.bodies, &robot.spring_tables, seed).q;
+            let mut s = vec![0.0; 49];
+            dynamics.coupling(&q, &mut s).unwrap_or_else(|e| panic!("{e}"));
+            for (i, row) in s.chunks(7).enumerate() {
+                assert!(row[..(i + 2).min(7)].iter().all(|x| *x == 0.0), "{file}, row {i}: {row:?}");
+                assert!(row.iter().skip(i + 2).all(|x| *x != 0.0), "{file}, row {i}: {row:?}");
+            }
         }
     }
 }

@@ -127,7 +127,7 @@ fn every_eigenvalue_is_in_one_mode() {
 fn the_projects_robots_have_all_their_modes_at_any_pose_fixed_and_floating() {
     let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
     let mut count = 0;
-    for name in ["iiwa14", "manutec_r3", "planar_3r", "puma560", "single_link"] {
+    for name in ["iiwa14", "lwr", "manutec_r3", "planar_3r", "puma560", "single_link"] {
         for floating in [false, true] {
             let options = LoadOptions { floating, ..LoadOptions::default() };
             // Most bases are too light to float with their motors.

@@ -24,6 +24,7 @@ fn robots_follow_their_references() {
     let scenarios = [
         ("puma560/track.yaml", 0.02),
         ("iiwa14/track.yaml", 0.05),
+        ("lwr/track.yaml", 0.05),
         ("planar_3r/track.yaml", 0.05),
         ("planar_3r/waypoints.yaml", 0.05),
         ("manutec_r3/hold.yaml", 1e-6),
