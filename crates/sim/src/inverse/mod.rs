@@ -1,7 +1,11 @@
 //! The inverse of an elastic robot: motors and torques from the motion of the links, with storage of its own.
 
+mod along;
+mod run;
 mod smoothness;
 
+pub use along::ReferenceInverse;
+pub use run::{InverseRun, InverseSummary, JointInverse};
 pub use smoothness::{JointSmoothness, SmoothnessTable};
 
 use crate::error::{Error, ErrorKind};

@@ -22,7 +22,7 @@ use crate::reference::{Point, References};
 use crate::robot::Robot;
 use crate::scenario::{Integrator, ScenarioFile};
 use gyroflex::spatial::Vec3;
-use sampler::Sampler;
+pub(crate) use sampler::Sampler;
 
 /// A run that is ready to start, or has been run.
 #[derive(Clone, Debug)]

@@ -12,7 +12,7 @@ use gyroflex::spatial::{Force, Motion, Transform, Vec3};
 
 /// Fills samples without allocating.
 #[derive(Clone, Debug)]
-pub(super) struct Sampler {
+pub(crate) struct Sampler {
     joints: Coordinates,
     links: Vec<LinkFrame>,
     rotors: Vec<Rotor>,
@@ -29,7 +29,7 @@ pub(super) struct Sampler {
     unused: Vec<f64>,
     m: Vec<f64>,
     s: Vec<f64>,
-    pub(super) sample: Sample,
+    pub(crate) sample: Sample,
 }
 
 /// A link's place on its body, and its parent among the links.
@@ -52,7 +52,7 @@ struct Rotor {
 }
 
 impl Sampler {
-    pub(super) fn new(robot: &Robot, joints: &Coordinates, dynamics: &Dynamics) -> Result<Self, Error> {
+    pub(crate) fn new(robot: &Robot, joints: &Coordinates, dynamics: &Dynamics) -> Result<Self, Error> {
         let (nv, bodies, n) = (dynamics.nv(), robot.bodies.len(), joints.len());
         let fidelity = dynamics.owned_model().fidelity;
         let mut rotors = Vec::new();
@@ -117,7 +117,7 @@ impl Sampler {
     }
 
     /// Fills the sample of one instant; `loads` are those of that instant.
-    pub(super) fn take(
+    pub(crate) fn take(
         &mut self,
         t: f64,
         dynamics: &mut Dynamics,

@@ -1,0 +1,158 @@
+//! The inverse of a robot along references.
+
+use super::InverseModel;
+use crate::coordinates::Coordinates;
+use crate::dynamics::Dynamics;
+use crate::equilibrium::Equilibrium;
+use crate::error::Error;
+use crate::load::yaml::Keys;
+use crate::reference::References;
+use crate::scenario::fault;
+use gyroflex::dynamics::External;
+
+/// An inverse, and the motion of the links at one instant.
+#[derive(Clone, Debug)]
+pub struct ReferenceInverse {
+    inverse: InverseModel,
+    joints: Coordinates,
+    order: usize,
+    q: Vec<f64>,
+    derivatives: Vec<f64>,
+    of_joint: Vec<f64>,
+}
+
+/// Times the slowest transmission settles in before the start.
+const SETTLING_TIMES: f64 = 8.0;
+/// Steps of that.
+const SETTLING_STEPS: u32 = 400;
+/// The longest way back before the start [s].
+const LONGEST_SETTLING: f64 = 2.0;
+
+impl ReferenceInverse {
+    /// Takes an inverse of a robot on a fixed base, for references that are smooth enough for it.
+    ///
+    /// # Errors
+    /// A floating root, and references with too few derivatives, joint by joint.
+    pub fn new(
+        inverse: InverseModel,
+        joints: &Coordinates,
+        references: &References,
+        keys: &Keys,
+    ) -> Result<Self, Error> {
+        if joints.floating {
+            let problem = "a reference moves joints only, but the robot's root floats";
+            return Err(fault(keys, "reference", problem, "fix the root"));
+        }
+        let mut rough = Vec::new();
+        let orders = inverse.smoothness().joints;
+        for (i, joint) in joints.joints.iter().enumerate() {
+            let needed = usize::from(orders[joint.body].position);
+            if let Some(given) = references.smoothness(i).filter(|given| *given < needed) {
+                rough.push(format!("`{}` needs {needed} and has {given}", joint.name));
+            }
+        }
+        if !rough.is_empty() {
+            let problem =
+                format!("the torques depend on more derivatives than the references have: {}", rough.join(", "));
+            let most = inverse.smoothness().order();
+            let remedy = format!(
+                "use `filtered_step` with `order: {most}`, `polynomial` with `order: {}` or `sines`; or invert a model that needs \
+                 fewer: `reduced`, or one with added `damping`",
+                most - 1
+            );
+            return Err(fault(keys, "reference", problem, remedy));
+        }
+        let nv = inverse.deflection().len();
+        let order = inverse.smoothness().order();
+        Ok(Self {
+            q: vec![0.0; joints.len()],
+            derivatives: vec![0.0; order * nv],
+            of_joint: vec![0.0; order + 1],
+            joints: joints.clone(),
+            inverse,
+            order,
+        })
+    }
+
+    /// The inverse, with what it found last.
+    pub fn inverse(&self) -> &InverseModel {
+        &self.inverse
+    }
+
+    /// Positions of the links at the last instant: `nq` entries.
+    pub fn q(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// A derivative of the positions there, from the first on: `nv` entries.
+    pub fn derivative(&self, k: usize) -> &[f64] {
+        let nv = self.inverse.deflection().len();
+        &self.derivatives[(k - 1) * nv..k * nv]
+    }
+
+    /// Deflects the transmissions as they are at time 0 after a long time on the references: those of equilibrium, and for damped ones what
+    /// has settled since.
+    ///
+    /// # Errors
+    /// As [`InverseModel::at`].
+    pub fn start(&mut self, references: &References) -> Result<(), Error> {
+        let model = self.inverse.model().view();
+        let slowest = model.bodies().iter().filter_map(|b| b.drive.and_then(|d| d.elastic)).filter(|e| e.damping > 0.0);
+        let rate = slowest.map(|e| e.spring.stiffness / e.damping).fold(f64::INFINITY, f64::min);
+        let time = if rate.is_finite() { (SETTLING_TIMES / rate).min(LONGEST_SETTLING) } else { 0.0 };
+        let step = time / f64::from(SETTLING_STEPS);
+        self.rest(references, -time)?;
+        if time > 0.0 {
+            for i in 0..SETTLING_STEPS {
+                self.at(references, f64::from(i) * step - time, step)?;
+                self.inverse.advance();
+            }
+        }
+        self.at(references, 0.0, 0.0)
+    }
+
+    /// Deflections of equilibrium at time `t`.
+    fn rest(&mut self, references: &References, t: f64) -> Result<(), Error> {
+        self.look(references, t);
+        let nv = self.inverse.deflection().len();
+        let mut dynamics = Dynamics::new(self.inverse.model().clone());
+        let (mut theta, mut tau) = (vec![0.0; nv], vec![0.0; nv]);
+        Equilibrium::new(nv).solve(&mut dynamics, &self.q, External::none(), &mut theta, &mut tau)?;
+        let mut deflection = vec![0.0; nv];
+        for body in dynamics.model().bodies() {
+            let (k, Some(drive)) = (body.v_index(), &body.drive) else { continue };
+            let Some(elastic) = &drive.elastic else { continue };
+            let error = elastic.error.map_or(0.0, |e| e.value_and_slope(theta[k], drive.rotor.gear_ratio).0);
+            deflection[k] = theta[k] - self.q[body.q_index()] - error;
+        }
+        self.inverse.set_deflection(&deflection);
+        Ok(())
+    }
+
+    /// Motors and torques at time `t` [s]; `step` is the time to the next instant, for which `advance` of the inverse moves its
+    /// deflections.
+    ///
+    /// # Errors
+    /// As [`InverseModel::at`].
+    pub fn at(&mut self, references: &References, t: f64, step: f64) -> Result<(), Error> {
+        self.look(references, t);
+        self.inverse.at(&self.q, &self.derivatives, External::none(), step)
+    }
+
+    /// Moves the deflections on by the step of the last instant.
+    pub fn advance(&mut self) {
+        self.inverse.advance();
+    }
+
+    /// The motion of the links at time `t`.
+    fn look(&mut self, references: &References, t: f64) {
+        let nv = self.inverse.deflection().len();
+        for (i, joint) in self.joints.joints.iter().enumerate() {
+            references.derivatives(i, t, &mut self.of_joint);
+            self.q[joint.q] = self.of_joint[0];
+            for k in 0..self.order {
+                self.derivatives[k * nv + joint.v] = self.of_joint[k + 1];
+            }
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! `gyroflex inverse`: motors and torques along the reference of a scenario.
+
+use super::{InverseModel, ReferenceInverse, with_least_damping};
+use crate::coordinates::Coordinates;
+use crate::dynamics::Dynamics;
+use crate::error::{Error, Warning};
+use crate::loads::Loads;
+use crate::record::{Recorder, RunInfo};
+use crate::reference::{Point, References};
+use crate::robot::Robot;
+use crate::scenario::ScenarioFile;
+use crate::simulate::{Sampler, StateVec};
+use gyroflex::model::Fidelity;
+use gyroflex::spatial::Vec3;
+use serde::Serialize;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// The longest step of the deflections of damped transmissions [s].
+const LONGEST_STEP: f64 = 1e-4;
+
+/// An inverse along a scenario's reference, ready to run.
+#[derive(Clone, Debug)]
+pub struct InverseRun {
+    robot: Robot,
+    file: ScenarioFile,
+    joints: Coordinates,
+    references: References,
+    along: ReferenceInverse,
+    /// The inverted model, for what is logged besides.
+    dynamics: Dynamics,
+    sampler: Sampler,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+}
+
+/// What came out.
+#[derive(Clone, Debug, Serialize)]
+pub struct InverseSummary {
+    /// The robot.
+    pub robot: String,
+    /// The inverted model.
+    pub model: &'static str,
+    /// Time covered [s].
+    pub end_time: f64,
+    /// Whether the run was stopped.
+    pub interrupted: bool,
+    /// Samples recorded.
+    pub samples: u64,
+    /// Mean time of one inverse [µs].
+    pub time_per_call: f64,
+    /// One entry per joint.
+    pub joints: Vec<JointInverse>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// The largest values of one joint; torques are reflected.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct JointInverse {
+    /// Its name.
+    pub name: String,
+    /// Derivatives of its position that the torques depend on.
+    pub derivatives_needed: u8,
+    /// Derivatives that its reference has; `None` for all.
+    pub derivatives_given: Option<usize>,
+    /// Motor torque [N m or N].
+    pub peak_torque: f64,
+    /// Torque through the transmission [N m or N].
+    pub peak_transmission_torque: f64,
+    /// Deflection of the transmission [rad or m].
+    pub peak_deflection: f64,
+    /// Motor speed [rad/s or m/s].
+    pub peak_motor_speed: f64,
+}
+
+impl InverseRun {
+    /// Prepares the inverse of `robot` in the model `fidelity`, else the scenario's or the robot's, with at least `damping` in its
+    /// transmissions.
+    ///
+    /// # Errors
+    /// Everything in the scenario that does not fit the robot, and references that are not smooth enough.
+    pub fn new(robot: &Robot, file: &ScenarioFile, fidelity: Option<Fidelity>, damping: f64) -> Result<Self, Error> {
+        let scenario = &file.scenario;
+        let mut robot = with_least_damping(robot, damping);
+        if let Some(gravity) = scenario.gravity {
+            robot.gravity = Vec3::from(gravity);
+        }
+        robot.fidelity = fidelity.or(scenario.model.map(Into::into)).unwrap_or(robot.fidelity);
+        let mut warnings = Vec::new();
+        let joints = Coordinates::of(&robot);
+        let q0 = joints.spread(&scenario.initial.q, &file.keys, "initial.q")?;
+        let references = References::of(file, &robot, &joints, &q0, &mut warnings)?;
+        if !scenario.wrenches.is_empty() {
+            warnings.push(Warning {
+                file: file.keys.locate("wrenches"),
+                element: "wrenches".to_owned(),
+                message: "they do not act on the inverse".to_owned(),
+            });
+        }
+        let inverse = InverseModel::new(&robot, robot.fidelity, 0)?;
+        let along = ReferenceInverse::new(inverse, &joints, &references, &file.keys)?;
+        let dynamics = Dynamics::new(robot.model(robot.fidelity)?);
+        let sampler = Sampler::new(&robot, &joints, &dynamics)?;
+        Ok(Self { robot, file: file.clone(), joints, references, along, dynamics, sampler, warnings })
+    }
+
+    /// What a recorder must know before the first sample.
+    pub fn run_info(&self) -> RunInfo {
+        let mut info = RunInfo::new(&self.robot, self.robot.fidelity);
+        for source in std::iter::once(&self.file.source).chain(&self.file.csv) {
+            info.attachments.push((source.name.clone(), source.text.clone()));
+        }
+        let scenario = &self.file.scenario;
+        for (key, value) in [
+            ("gyroflex", env!("CARGO_PKG_VERSION").to_owned()),
+            ("kind", "inverse".to_owned()),
+            ("robot", self.robot.name.clone()),
+            ("scenario", self.file.source.name.clone()),
+            ("model", self.robot.fidelity.name().to_owned()),
+            ("duration", scenario.duration.to_string()),
+            ("log_rate", scenario.log.rate.to_string()),
+        ] {
+            info.metadata.push((key.to_owned(), value));
+        }
+        info
+    }
+
+    /// Samples of an uninterrupted run.
+    pub fn expected_samples(&self) -> u64 {
+        (self.file.scenario.duration * self.file.scenario.log.rate * (1.0 + 1e-12)) as u64 + 1
+    }
+
+    /// Runs along the reference and records as many samples as the scenario asks for; `progress` is told the time [s] and may stop it. The
+    /// recorder is completed in any case.
+    ///
+    /// # Errors
+    /// Torques that are not finite, transmissions that cannot be inverted, a recorder that failed.
+    pub fn run(
+        &mut self,
+        recorder: &mut dyn Recorder,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<InverseSummary, Error> {
+        let done = self.samples(recorder, progress);
+        let finished = recorder.finish();
+        let summary = done?;
+        finished?;
+        Ok(summary)
+    }
+
+    fn samples(
+        &mut self,
+        recorder: &mut dyn Recorder,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<InverseSummary, Error> {
+        let rate = self.file.scenario.log.rate;
+        let steps = (1.0 / rate / LONGEST_STEP).ceil().max(1.0);
+        let step = 1.0 / rate / steps;
+        let mut loads = Loads::new(&[], &self.robot, &self.file.keys)?;
+        let mut points = vec![Point::default(); self.joints.len()];
+        let mut summary = self.empty_summary();
+        let (mut calls, mut time) = (0_u32, 0.0);
+        self.along.start(&self.references)?;
+        for sample in 0..self.expected_samples() {
+            let t = sample as f64 / rate;
+            for i in 0..steps as u32 {
+                let started = Instant::now();
+                self.along.at(&self.references, t + f64::from(i) * step, step)?;
+                time += started.elapsed().as_secs_f64();
+                calls += 1;
+                if i == 0 {
+                    self.references.points(t, &mut points);
+                    self.take(t, &points, &mut loads)?;
+                    recorder.record(&self.sampler.sample)?;
+                    self.tally(&mut summary);
+                }
+                self.along.advance();
+            }
+            (summary.end_time, summary.samples) = (t, sample + 1);
+            if progress(t).is_break() {
+                summary.interrupted = sample + 1 < self.expected_samples();
+                break;
+            }
+        }
+        summary.time_per_call = 1e6 * time / f64::from(calls.max(1));
+        Ok(summary)
+    }
+
+    /// One sample: the state that the inverse says the robot is in, under the torques it says the motors need.
+    fn take(&mut self, t: f64, points: &[Point], loads: &mut Loads) -> Result<(), Error> {
+        let inverse = self.along.inverse();
+        let state = StateVec {
+            q: self.along.q().to_vec(),
+            qd: self.along.derivative(1).to_vec(),
+            theta: inverse.theta(0).to_vec(),
+            thetad: inverse.theta(1).to_vec(),
+        };
+        self.sampler.take(t, &mut self.dynamics, state.view(), inverse.tau(0), loads, points)
+    }
+
+    fn empty_summary(&self) -> InverseSummary {
+        let orders = self.along.inverse().smoothness().joints;
+        let joint = |(i, joint): (usize, &crate::coordinates::Coordinate)| JointInverse {
+            name: joint.name.clone(),
+            derivatives_needed: orders[joint.body].position,
+            derivatives_given: self.references.smoothness(i),
+            ..JointInverse::default()
+        };
+        InverseSummary {
+            robot: self.robot.name.clone(),
+            model: self.robot.fidelity.name(),
+            end_time: 0.0,
+            interrupted: false,
+            samples: 0,
+            time_per_call: 0.0,
+            joints: self.joints.joints.iter().enumerate().map(joint).collect(),
+            warnings: self.warnings.iter().map(Warning::to_string).collect(),
+        }
+    }
+
+    fn tally(&self, summary: &mut InverseSummary) {
+        let sample = &self.sampler.sample;
+        for (i, joint) in summary.joints.iter_mut().enumerate() {
+            joint.peak_torque = joint.peak_torque.max(sample.tau[i].abs());
+            joint.peak_transmission_torque = joint.peak_transmission_torque.max(sample.tau_j[i].abs());
+            joint.peak_deflection = joint.peak_deflection.max(sample.deflection[i].abs());
+            joint.peak_motor_speed = joint.peak_motor_speed.max(sample.thetad[i].abs());
+        }
+    }
+}
