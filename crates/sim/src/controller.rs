@@ -84,7 +84,7 @@ impl Control {
     }
 
     /// Motor torques `tau` (`nv` entries, reflected) for the reference and the state, limited to what the drives can give.
-    /// Of the state the controller reads the motor positions and velocities, and the pose of a floating root.
+    /// `dynamics` is of the robot as the controller knows it. Of the state the controller reads the motor positions and velocities, and the pose of a floating root.
     ///
     /// # Errors
     /// A slice that does not fit the model.

@@ -67,6 +67,13 @@ impl ReferenceMotion {
                 message: "they do not act on the linear model".to_owned(),
             });
         }
+        if file.scenario.plant.is_some() {
+            warnings.push(Warning {
+                file: file.keys.locate("plant"),
+                element: "plant".to_owned(),
+                message: "it is not in the linear model, which is of the robot as its controller knows it".to_owned(),
+            });
+        }
         let model = fidelity.or(file.scenario.model.map(Into::into)).unwrap_or(robot.fidelity);
         let linearizer = Linearizer::new(&robot, model, kept)?;
         Ok(Self { linearizer, joints, references, duration: file.scenario.duration, warnings })

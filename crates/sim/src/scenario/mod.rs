@@ -2,12 +2,14 @@
 
 mod controller;
 mod integrator;
+mod plant;
 mod read;
 mod reference;
 mod validate;
 
 pub use controller::{Controller, Gains, RigidModel};
 pub use integrator::Integrator;
+pub use plant::{Factors, Plant};
 pub use read::ScenarioFile;
 pub use reference::{JointReference, References, SineTerm};
 
@@ -42,6 +44,9 @@ pub struct Scenario {
     /// What drives the motors.
     #[serde(default)]
     pub controller: Controller,
+    /// What the simulated robot has that its controller does not know; default: nothing, both are the robot of the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plant: Option<Plant>,
     /// External loads on links.
     #[serde(default)]
     pub wrenches: Vec<Wrench>,

@@ -114,7 +114,8 @@ impl Simulation {
             *point = reference.at(instant.t);
         }
         if instant.control {
-            self.control.tick(&mut self.dynamics, &self.points, self.state.view(), &mut self.tau)?;
+            let known = self.nominal.as_mut().map_or(&mut self.dynamics, |n| &mut n.dynamics);
+            self.control.tick(known, &self.points, self.state.view(), &mut self.tau)?;
         }
         if !instant.log {
             return Ok(());

@@ -5,6 +5,7 @@ mod controllers;
 mod equilibria;
 mod integration;
 mod logs;
+mod plant;
 mod refusals;
 mod robots;
 mod samples;
