@@ -14,10 +14,11 @@ fn robot(file: &str) -> Robot {
     load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-const ALL: [&str; 8] = [
+const ALL: [&str; 9] = [
     "iiwa14/robot.yaml",
     "iiwa14/lossless.yaml",
     "lwr/robot.yaml",
+    "lwr/loaded.yaml",
     "lwr/undamped.yaml",
     "manutec_r3/robot.yaml",
     "planar_3r/robot.yaml",

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Warning};
 use gyroflex::model::{Body, BodySpec, Fidelity, Knot, Model, RobotSpec};
-use gyroflex::spatial::{Transform, Vec3};
+use gyroflex::spatial::{SpatialInertia, Transform, Vec3};
 
 /// A loaded robot.
 #[derive(Clone, Debug)]
@@ -27,6 +27,19 @@ pub struct Robot {
     pub warnings: Vec<Warning>,
     /// The files the robot was read from, the URDF first.
     pub sources: Vec<SourceFile>,
+    /// The load it carries; the inertia of its body contains it.
+    pub payload: Option<Payload>,
+}
+
+/// A load fixed to a robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Payload {
+    /// The body that carries it; `None` rests on the world.
+    pub body: Option<usize>,
+    /// Its inertia about the origin of that body's link frame.
+    pub inertia: SpatialInertia<f64>,
+    /// Inertia of that body without it.
+    pub unloaded: SpatialInertia<f64>,
 }
 
 /// A joint by its names and limits.
@@ -111,6 +124,20 @@ impl Robot {
         let mut knots = vec![Knot::EMPTY; spec.knots_needed()];
         spec.lower(fidelity, &mut bodies, &mut knots).map_err(|e| self.model_error(e))?;
         Ok(OwnedModel { bodies, knots, gravity: self.gravity, fidelity })
+    }
+
+    /// Puts a load on the robot in place of the one it carries: the body, and the load's inertia about the origin of that body's link
+    /// frame. `None` takes the load off.
+    pub fn set_payload(&mut self, load: Option<(Option<usize>, SpatialInertia<f64>)>) {
+        if let Some(Payload { body: Some(body), unloaded, .. }) = self.payload.take() {
+            self.bodies[body].inertia = unloaded;
+        }
+        let Some((body, inertia)) = load else { return };
+        let unloaded = body.map_or(SpatialInertia::zero(), |b| self.bodies[b].inertia);
+        if let Some(body) = body {
+            self.bodies[body].inertia = unloaded + inertia;
+        }
+        self.payload = Some(Payload { body, inertia, unloaded });
     }
 
     /// Number of single-degree-of-freedom joints: all but a floating root.

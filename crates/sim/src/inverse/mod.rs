@@ -141,7 +141,8 @@ impl InverseModel {
         &self.deflection_rate
     }
 
-    fn error(&self, error: InverseError) -> Error {
+    /// What the core's error means for this robot.
+    pub(crate) fn error(&self, error: InverseError) -> Error {
         let (body, kind) = match error {
             InverseError::Size(e) => return e.into(),
             InverseError::TooManyDerivatives { .. } => (0, ErrorKind::Model),

@@ -69,6 +69,13 @@ impl ReferenceMotion {
                 message: "they do not act on the linear model".to_owned(),
             });
         }
+        if file.scenario.plant.is_some() {
+            warnings.push(Warning {
+                file: file.keys.locate("plant"),
+                element: "plant".to_owned(),
+                message: "it is not in the linear model, which is of the robot as its controller knows it".to_owned(),
+            });
+        }
         let linearizer = Linearizer::new(&robot, fidelity.unwrap_or(robot.fidelity), kept)?;
         Ok(Self { linearizer, joints, references, duration: file.scenario.duration, warnings })
     }

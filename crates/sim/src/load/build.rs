@@ -58,7 +58,7 @@ pub(crate) fn build(
         let root = &tree.links[tree.root];
         warnings.push(Warning { file: root.at.clone(), element: format!("link `{}`", root.name), message });
     }
-    let robot = Robot {
+    let mut robot = Robot {
         name,
         joints,
         bodies,
@@ -69,7 +69,11 @@ pub(crate) fn build(
         table,
         warnings,
         sources: Vec::new(),
+        payload: None,
     };
+    if let Some((yaml, payload)) = yaml.and_then(|y| Some((y, y.value.payload.as_ref()?))) {
+        payload.put_on(&mut robot, &yaml.keys, "payload")?;
+    }
     robot.spec().validate().map_err(|e| {
         let joint = joint_of_body.get(e.body).copied().flatten();
         let at = joint.map_or(&tree.links[tree.root].at, |j| &tree.joints[j].at);

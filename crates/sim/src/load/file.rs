@@ -1,5 +1,6 @@
 //! What a robot YAML may contain: the drives that a URDF has no words for.
 
+use super::PayloadFile;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer};
@@ -25,6 +26,9 @@ pub struct RobotFile {
     /// What to do with joints that mimic another one; default: refuse the robot.
     #[serde(default)]
     pub mimic: Option<Mimic>,
+    /// A load fixed to a link, added to what the URDF says; default: none.
+    #[serde(default)]
+    pub payload: Option<PayloadFile>,
     /// The drives by joint name. Joints without an entry have what the URDF itself says.
     #[serde(default)]
     pub drives: BTreeMap<String, DriveFile>,

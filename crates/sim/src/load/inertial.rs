@@ -54,13 +54,25 @@ pub(crate) fn check(link: &LinkElement, body: &SpatialInertia<f64>, warnings: &m
             "its inertia has a negative principal moment ({named}); used as it is, since the links on fixed joints around it \
              make up for it"
         ));
-    } else if least + middle < most * (1.0 - ROUNDING) - NOTHING {
+    } else if breaks_triangle(moments) {
         warn(format!(
             "its principal moments ({named}) violate the triangle inequality: no distribution of mass has them; \
              used as they are, since the equations of motion stay well posed"
         ));
     }
     Ok(())
+}
+
+/// What keeps a rotational inertia about the centre of mass from being that of a body; `None` where nothing does.
+pub(crate) fn unphysical(about_com: &SymMat3<f64>) -> Option<String> {
+    let moments @ [least, middle, most] = principal_moments(about_com);
+    let named = format!("{least:.6e}, {middle:.6e}, {most:.6e} kg m²");
+    if is_negative(moments) {
+        return Some(format!("it has a negative principal moment ({named})"));
+    }
+    breaks_triangle(moments).then(|| {
+        format!("its principal moments ({named}) violate the triangle inequality: no distribution of mass has them")
+    })
 }
 
 fn about_com(inertial: &urdf_rs::Inertial) -> SymMat3<f64> {
@@ -79,6 +91,10 @@ fn about_own_com(body: &SpatialInertia<f64>) -> SymMat3<f64> {
 
 fn is_negative([least, _, most]: [f64; 3]) -> bool {
     least < -ROUNDING * most.abs() - NOTHING
+}
+
+fn breaks_triangle([least, middle, most]: [f64; 3]) -> bool {
+    least + middle < most * (1.0 - ROUNDING) - NOTHING
 }
 
 /// Principal moments from the least to the largest [kg m²].

@@ -17,6 +17,7 @@ mod merge;
 mod meshes;
 mod mount;
 pub mod nearest;
+mod payload;
 mod pose;
 pub mod source;
 mod standard;
@@ -26,6 +27,7 @@ mod xml;
 pub mod yaml;
 
 pub use file::{Mimic, robot_schema};
+pub use payload::PayloadFile;
 pub use source::{Disk, Embedded, FileSource};
 
 use crate::error::{Error, ErrorKind};

@@ -111,6 +111,7 @@ mod tests {
             table: Vec::new(),
             warnings: Vec::new(),
             sources: sources.map(|(name, text)| SourceFile { name: name.to_owned(), text: text.to_owned() }).to_vec(),
+            payload: None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Controllers as a scenario names them.
 
+use super::ModelName;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -38,6 +39,41 @@ pub enum Controller {
         #[serde(default)]
         model: RigidModel,
     },
+    /// The inverse of the elastic robot, and PD on the motors around the motion that it finds (Thümmel, Otter & Bals):
+    /// `tau = tau_inverse + kp (theta_inverse − theta) + kd (thetad_inverse − thetad)`. References must be smooth enough for the inverse.
+    TwoDegreeOfFreedom {
+        /// Ticks a second [Hz].
+        #[serde(default = "default_rate")]
+        rate: f64,
+        /// Position gains [N m/rad or N/m].
+        kp: Gains,
+        /// Velocity gains [N m s/rad or N s/m].
+        kd: Gains,
+        /// What is inverted.
+        #[serde(default)]
+        inverse: InverseOf,
+    },
+    /// Feedback linearization of the reduced model, with the whole state measured: every joint becomes `(s + bandwidth)^r`, `r` being 3 with
+    /// damped transmissions and 4 with undamped ones. All joints must be elastic.
+    FeedbackLinearization {
+        /// Ticks a second [Hz].
+        #[serde(default = "default_rate")]
+        rate: f64,
+        /// Bandwidths of the closed loops [rad/s].
+        bandwidth: Gains,
+    },
+}
+
+/// Which inverse a controller feeds forward.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InverseOf {
+    /// The model that is inverted; default: the one that the scenario or the robot names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<ModelName>,
+    /// Least damping of the transmissions in the inverse [N m s/rad or N s/m]: undamped joints need fewer derivatives with it.
+    #[serde(default)]
+    pub damping: f64,
 }
 
 impl Default for Controller {
@@ -51,7 +87,10 @@ impl Controller {
     pub fn rate(&self) -> Option<f64> {
         match self {
             Self::None {} => None,
-            Self::Pd { rate, .. } | Self::ComputedTorque { rate, .. } => Some(*rate),
+            Self::Pd { rate, .. }
+            | Self::ComputedTorque { rate, .. }
+            | Self::TwoDegreeOfFreedom { rate, .. }
+            | Self::FeedbackLinearization { rate, .. } => Some(*rate),
         }
     }
 }

@@ -3,13 +3,15 @@
 mod controller;
 mod integrator;
 mod motion;
+mod plant;
 mod read;
 mod reference;
 mod shaper;
 mod validate;
 
-pub use controller::{Controller, Gains, RigidModel};
+pub use controller::{Controller, Gains, InverseOf, RigidModel};
 pub use integrator::Integrator;
+pub use plant::{Factors, Plant};
 pub use read::ScenarioFile;
 pub use reference::{JointReference, References, SineTerm};
 pub use shaper::{InputShaper, ModesOf, Motors, ShaperMode, ShaperModes, ShaperType};
@@ -48,6 +50,9 @@ pub struct Scenario {
     /// What drives the motors.
     #[serde(default)]
     pub controller: Controller,
+    /// What the simulated robot has that its controller does not know; default: nothing, both are the robot of the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plant: Option<Plant>,
     /// External loads on links.
     #[serde(default)]
     pub wrenches: Vec<Wrench>,

@@ -1,7 +1,7 @@
 //! What can be wrong with a scenario before any robot is loaded.
 
-use super::{Controller, Gains, Initial, Integrator, JointValues, Scenario, Wrench, fault};
-use crate::error::Error;
+use super::{Controller, Gains, Initial, Integrator, JointValues, Plant, Scenario, Wrench, fault};
+use crate::error::{Error, ErrorKind};
 use crate::load::yaml::Keys;
 
 impl Scenario {
@@ -18,6 +18,9 @@ impl Scenario {
         check.references(&self.reference)?;
         self.shaper.iter().try_for_each(|shaper| check.shaper(shaper))?;
         check.controller(&self.controller)?;
+        if let Some(plant) = &self.plant {
+            check.plant(plant)?;
+        }
         for (i, wrench) in self.wrenches.iter().enumerate() {
             check.wrench(&format!("wrenches[{i}]"), wrench)?;
         }
@@ -86,6 +89,16 @@ impl Check<'_> {
                 self.gains("controller.kp", kp)?;
                 self.gains("controller.kd", kd)
             }
+            Controller::TwoDegreeOfFreedom { rate, kp, kd, inverse } => {
+                self.positive("controller.rate", *rate)?;
+                self.gains("controller.kp", kp)?;
+                self.gains("controller.kd", kd)?;
+                self.not_negative("controller.inverse.damping", inverse.damping)
+            }
+            Controller::FeedbackLinearization { rate, bandwidth } => {
+                self.positive("controller.rate", *rate)?;
+                self.gains("controller.bandwidth", bandwidth)
+            }
         }
     }
 
@@ -94,6 +107,17 @@ impl Check<'_> {
             Gains::All(value) => self.not_negative(key, *value),
             Gains::Named(map) => map.iter().try_for_each(|(n, v)| self.not_negative(&format!("{key}.{n}"), *v)),
         }
+    }
+
+    fn plant(&self, plant: &Plant) -> Result<(), Error> {
+        for (key, factors) in [("plant.stiffness", &plant.stiffness), ("plant.mass", &plant.mass)] {
+            let all = factors.iter().flat_map(|f| f.numbers(key));
+            all.into_iter().try_for_each(|(key, factor)| self.positive(&key, factor))?;
+        }
+        let damping = plant.damping.iter().flat_map(|f| f.numbers("plant.damping"));
+        damping.into_iter().try_for_each(|(key, factor)| self.not_negative(&key, factor))?;
+        let payload = plant.payload.as_ref().map_or(Ok(()), |p| p.check(self.keys, "plant.payload"));
+        payload.map_err(|e| Error { kind: ErrorKind::Scenario, ..e })
     }
 
     fn wrench(&self, key: &str, wrench: &Wrench) -> Result<(), Error> {

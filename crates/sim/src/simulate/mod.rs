@@ -2,6 +2,7 @@
 
 mod checks;
 mod clock;
+mod plant;
 mod run;
 mod sampler;
 mod start;
@@ -31,6 +32,8 @@ pub struct Simulation {
     file: ScenarioFile,
     joints: Coordinates,
     dynamics: Dynamics,
+    /// The robot as its controller knows it, where that is not the simulated one.
+    nominal: Option<Nominal>,
     references: References,
     points: Vec<Point>,
     control: Control,
@@ -48,9 +51,16 @@ pub struct Simulation {
     setup_warnings: usize,
 }
 
+/// A robot that is not simulated.
+#[derive(Clone, Debug)]
+struct Nominal {
+    robot: Robot,
+    dynamics: Dynamics,
+}
+
 impl Simulation {
     /// Sets up a run of `file` with `robot`, which the scenario's own model and gravity override, and refuses it if it cannot
-    /// go well.
+    /// go well. The controller knows that robot; what is simulated has the scenario's `plant` beside it.
     ///
     /// # Errors
     /// Everything in the scenario that does not fit the robot, and a step too large for the robot's fastest mode.
@@ -65,12 +75,22 @@ impl Simulation {
         }
         let mut warnings = Vec::new();
         let joints = Coordinates::of(&robot);
-        let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
         let q0 = joints.spread(&scenario.initial.q, &file.keys, "initial.q")?;
         let references = References::of(file, &robot, &joints, &q0, &mut warnings)?;
+        let mut control = Control::new(&scenario.controller, &robot, &joints, &references, &file.keys)?;
+        let nominal = match &scenario.plant {
+            None => None,
+            Some(differences) => {
+                let dynamics = Dynamics::new(robot.model(robot.fidelity)?);
+                let changed = plant::plant(&robot, differences, &file.keys)?;
+                warnings.extend_from_slice(&changed.warnings[robot.warnings.len()..]);
+                Some(Nominal { robot: std::mem::replace(&mut robot, changed), dynamics })
+            }
+        };
+        let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
         let mut loads = Loads::new(&scenario.wrenches, &robot, &file.keys)?;
-        let control = Control::new(&scenario.controller, &robot, &joints, &file.keys)?;
-        let initial = start::initial_state(file, &joints, &references, &mut dynamics, &mut loads)?;
+        let motors = control.start(&references)?;
+        let initial = start::initial_state(file, &joints, &references, motors, &mut dynamics, &mut loads)?;
         let modes = modes::modes(&mut dynamics, &joints, &initial.q, &initial.theta)?;
         let sampler = Sampler::new(&robot, &joints, &dynamics)?;
         let adaptive =
@@ -85,6 +105,7 @@ impl Simulation {
             robot,
             joints,
             dynamics,
+            nominal,
             references,
             control,
             loads,
@@ -102,9 +123,14 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// The robot as it is simulated: with the scenario's model and gravity.
+    /// The robot as it is simulated: with the scenario's model and gravity, and what its plant changes.
     pub fn robot(&self) -> &Robot {
         &self.robot
+    }
+
+    /// The robot as its controller knows it: with the scenario's model and gravity, without what its plant changes.
+    pub fn nominal(&self) -> &Robot {
+        self.nominal.as_ref().map_or(&self.robot, |n| &n.robot)
     }
 
     /// The joints of one degree of freedom, in the order of every vector that is logged.
@@ -163,6 +189,20 @@ impl Simulation {
         }
         if let Some(rate) = scenario.controller.rate() {
             add("control_rate", rate.to_string());
+        }
+        if let Some(plant) = &scenario.plant {
+            let factors = [("stiffness", &plant.stiffness), ("damping", &plant.damping), ("mass", &plant.mass)];
+            for (name, factors) in factors.into_iter().filter_map(|(name, factors)| Some((name, factors.as_ref()?))) {
+                for (key, factor) in factors.numbers(&format!("plant.{name}")) {
+                    add(&key, factor.to_string());
+                }
+            }
+            if let Some(load) = &plant.payload {
+                add(
+                    "plant.payload",
+                    format!("{} kg on {}, at {:?}, {:?}", load.mass, load.link, load.xyz, load.inertia),
+                );
+            }
         }
         add("log_rate", scenario.log.rate.to_string());
         if scenario.shaper.is_some() {

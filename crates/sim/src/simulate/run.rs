@@ -3,6 +3,7 @@
 use super::clock::{Clock, Instant};
 use super::summary::{Summary, Tally};
 use super::{Simulation, StateVec};
+use crate::controller::Tick;
 use crate::error::{Error, Warning};
 use crate::ode::Halt;
 use crate::record::Recorder;
@@ -80,6 +81,7 @@ impl Simulation {
         self.state.clone_from(&self.initial);
         self.tau.fill(0.0);
         self.control.reset();
+        self.control.start(&self.references)?;
         self.warnings.truncate(self.setup_warnings);
         let n = self.joints.len();
         let mut done = Progress { t: 0.0, steps: 0, interrupted: false, tally: Tally::new(n), beyond: vec![false; n] };
@@ -112,7 +114,9 @@ impl Simulation {
         }
         self.references.points(instant.t, &mut self.points);
         if instant.control {
-            self.control.tick(&mut self.dynamics, &self.points, self.state.view(), &mut self.tau)?;
+            let known = self.nominal.as_mut().map_or(&mut self.dynamics, |n| &mut n.dynamics);
+            let at = Tick { t: instant.t, references: &self.references, points: &self.points };
+            self.control.tick(known, at, self.state.view(), &mut self.tau)?;
         }
         if !instant.log {
             return Ok(());

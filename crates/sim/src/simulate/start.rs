@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::loads::Loads;
 use crate::reference::References;
 use crate::scenario::{ScenarioFile, fault};
+use gyroflex::control::Motors;
 use gyroflex::dynamics::State;
 use gyroflex::integrate::StateMut;
 
@@ -40,11 +41,13 @@ impl StateVec {
     }
 }
 
-/// The initial state: what the scenario gives, and for the rest the reference at time 0 and static equilibrium.
+/// The initial state: what the scenario gives, and for the rest the reference at time 0 and static equilibrium; or, where the controller
+/// knows how the motors move, that.
 pub(super) fn initial_state(
     file: &ScenarioFile,
     joints: &Coordinates,
     references: &References,
+    motors: Option<Motors<f64>>,
     dynamics: &mut Dynamics,
     loads: &mut Loads,
 ) -> Result<StateVec, Error> {
@@ -81,6 +84,9 @@ pub(super) fn initial_state(
     equilibrium.solve(dynamics, &state.q, loads.external(), &mut state.theta, &mut tau)?;
     for (i, joint) in joints.joints.iter().enumerate() {
         let elastic = dynamics.model().bodies()[joint.body].is_elastic();
+        if let Some(motors) = motors.filter(|_| elastic) {
+            (state.theta[joint.v], state.thetad[joint.v]) = (motors.theta[joint.v], motors.thetad[joint.v]);
+        }
         for (given, slot, key) in [(theta[i], &mut state.theta, "theta"), (thetad[i], &mut state.thetad, "thetad")] {
             let Some(value) = given else { continue };
             if !elastic {

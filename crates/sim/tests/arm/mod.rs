@@ -24,6 +24,7 @@ pub(crate) fn arm(floating: bool) -> Robot {
         table: Vec::new(),
         warnings: Vec::new(),
         sources: Vec::new(),
+        payload: None,
     };
     let mut parent = None;
     if floating {

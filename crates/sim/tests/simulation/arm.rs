@@ -45,6 +45,7 @@ pub fn arm(n: usize) -> Robot {
         table: Vec::new(),
         warnings: Vec::new(),
         sources: Vec::new(),
+        payload: None,
     };
     for i in 0..n {
         let parent = i.checked_sub(1);

@@ -3,18 +3,20 @@
 use crate::arm::{LENGTH, STIFFNESS, arm, run, scenario, with_drives};
 use gyroflex::dynamics::{External, Forward, State};
 use gyroflex::model::{Fidelity, Friction};
-use gyroflex_sim::controller::Control;
+use gyroflex_sim::controller::{Control, Tick};
 use gyroflex_sim::coordinates::Coordinates;
-use gyroflex_sim::reference::Point;
+use gyroflex_sim::reference::{Point, References, Trajectory};
 use gyroflex_sim::{Dynamics, Robot, Simulation};
 
 fn torque(robot: &Robot, yaml: &str, reference: &[Point], state: State<f64>) -> Vec<f64> {
     let file = scenario(&format!("duration: 1\n{yaml}"));
     let joints = Coordinates::of(robot);
-    let mut control = Control::new(&file.scenario.controller, robot, &joints, &file.keys).unwrap();
+    let references = References::new(reference.iter().map(|point| Trajectory::Hold(point.q)).collect());
+    let mut control = Control::new(&file.scenario.controller, robot, &joints, &references, &file.keys).unwrap();
     let mut dynamics = Dynamics::new(robot.model(robot.fidelity).unwrap());
     let mut tau = vec![0.0; dynamics.nv()];
-    control.tick(&mut dynamics, reference, state, &mut tau).unwrap();
+    let at = Tick { t: 0.0, references: &references, points: reference };
+    control.tick(&mut dynamics, at, state, &mut tau).unwrap();
     tau
 }
 

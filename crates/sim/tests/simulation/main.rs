@@ -5,6 +5,7 @@ mod controllers;
 mod equilibria;
 mod integration;
 mod logs;
+mod plant;
 mod references;
 mod refusals;
 mod robots;

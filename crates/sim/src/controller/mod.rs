@@ -1,15 +1,21 @@
 //! Controllers: reference and measured motor motion in, motor torques out, once a tick.
 
+mod inverse;
+mod linearization;
+
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
 use crate::equilibrium::Equilibrium;
 use crate::error::Error;
 use crate::load::yaml::Keys;
-use crate::reference::Point;
-use crate::robot::Robot;
+use crate::reference::{Point, References};
+use crate::robot::{OwnedModel, Robot};
 use crate::scenario::{Controller, Gains, RigidModel, fault};
-use gyroflex::dynamics::{Acceleration, External, Inverse, State};
+use gyroflex::control::{ComputedTorque, Joints, Motors, Pd};
+use gyroflex::dynamics::{External, RneaScratch, State};
 use gyroflex::model::Fidelity;
+use inverse::Feedforward;
+use linearization::Linearization;
 
 /// A controller and what it remembers.
 #[derive(Clone, Debug)]
@@ -25,6 +31,8 @@ pub struct Control {
     equilibrium: Equilibrium,
     q: Vec<f64>,
     qdd: Vec<f64>,
+    reference: Vec<f64>,
+    reference_rate: Vec<f64>,
     theta: Vec<f64>,
     feed_forward: Vec<f64>,
     unused: Vec<f64>,
@@ -34,15 +42,35 @@ pub struct Control {
 enum Law {
     None,
     Pd { gravity_compensation: bool },
-    ComputedTorque { rigid: Box<Dynamics> },
+    ComputedTorque { rigid: Box<OwnedModel>, scratch: Vec<RneaScratch<f64>> },
+    TwoDegreeOfFreedom(Box<Feedforward>),
+    FeedbackLinearization(Box<Linearization>),
+}
+
+/// An instant of control: what is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Tick<'a> {
+    /// The time [s].
+    pub t: f64,
+    /// What the joints are to follow.
+    pub references: &'a References,
+    /// The same at this instant, one entry per joint.
+    pub points: &'a [Point],
 }
 
 impl Control {
     /// The controller a scenario asks for.
     ///
     /// # Errors
-    /// Gains for unknown joints or none for known ones, and computed torque on a floating root.
-    pub fn new(spec: &Controller, robot: &Robot, joints: &Coordinates, keys: &Keys) -> Result<Self, Error> {
+    /// Gains for unknown joints or none for known ones, a robot that the law cannot drive, and references that are not smooth
+    /// enough for it.
+    pub fn new(
+        spec: &Controller,
+        robot: &Robot,
+        joints: &Coordinates,
+        references: &References,
+        keys: &Keys,
+    ) -> Result<Self, Error> {
         let n = joints.len();
         let (law, kp, kd) = match spec {
             Controller::None {} => (Law::None, vec![0.0; n], vec![0.0; n]),
@@ -59,8 +87,20 @@ impl Control {
                     RigidModel::Rigid => Fidelity::Rigid,
                     RigidModel::RigidReflected => Fidelity::RigidReflected,
                 };
-                let law = Law::ComputedTorque { rigid: Box::new(Dynamics::new(robot.model(fidelity)?)) };
+                let scratch = vec![RneaScratch::new(); robot.bodies.len()];
+                let law = Law::ComputedTorque { rigid: Box::new(robot.model(fidelity)?), scratch };
                 (law, gains(kp, joints, keys, "controller.kp")?, gains(kd, joints, keys, "controller.kd")?)
+            }
+            Controller::TwoDegreeOfFreedom { rate, kp, kd, inverse } => {
+                let feedforward = Feedforward::new(inverse, *rate, robot, joints, references, keys)?;
+                let law = Law::TwoDegreeOfFreedom(Box::new(feedforward));
+                (law, gains(kp, joints, keys, "controller.kp")?, gains(kd, joints, keys, "controller.kd")?)
+            }
+            Controller::FeedbackLinearization { bandwidth, .. } => {
+                let bandwidth = gains(bandwidth, joints, keys, "controller.bandwidth")?;
+                let law = Linearization::new(robot, joints, bandwidth, keys)?;
+                law.check(references, joints, keys)?;
+                (Law::FeedbackLinearization(Box::new(law)), vec![0.0; n], vec![0.0; n])
             }
         };
         let root = if joints.floating { (7, 6) } else { (0, 0) };
@@ -76,6 +116,8 @@ impl Control {
             equilibrium: Equilibrium::new(nv),
             q: vec![0.0; nq],
             qdd: vec![0.0; nv],
+            reference: vec![0.0; nv],
+            reference_rate: vec![0.0; nv],
             theta: vec![0.0; nv],
             feed_forward: vec![0.0; nv],
             unused: vec![0.0; nv],
@@ -83,46 +125,55 @@ impl Control {
         })
     }
 
-    /// Motor torques `tau` (`nv` entries, reflected) for the reference and the state, limited to what the drives can give.
-    /// Of the state the controller reads the motor positions and velocities, and the pose of a floating root.
+    /// Goes to time 0. Where the law knows how the motors move there, it says so.
     ///
     /// # Errors
-    /// A slice that does not fit the model.
-    pub fn tick(
-        &mut self,
-        dynamics: &mut Dynamics,
-        reference: &[Point],
-        state: State<f64>,
-        tau: &mut [f64],
-    ) -> Result<(), Error> {
+    /// An inverse that is not finite.
+    pub fn start(&mut self, references: &References) -> Result<Option<Motors<'_, f64>>, Error> {
+        let Law::TwoDegreeOfFreedom(feedforward) = &mut self.law else { return Ok(None) };
+        feedforward.start(references)?;
+        Ok(Some(feedforward.motors()))
+    }
+
+    /// Motor torques `tau` (`nv` entries, reflected) for the reference and the state, limited to what the drives can give.
+    /// Of the state the controller reads the motor positions and velocities, and the pose of a floating root; feedback linearization reads all.
+    ///
+    /// # Errors
+    /// A slice that does not fit the model, or torques that are not finite.
+    pub fn tick(&mut self, dynamics: &mut Dynamics, at: Tick, state: State<f64>, tau: &mut [f64]) -> Result<(), Error> {
         tau.fill(0.0);
-        if let Law::None = self.law {
-            return Ok(());
+        if let Law::Pd { .. } | Law::ComputedTorque { .. } = self.law {
+            self.hold_reference(dynamics, at.points, state)?;
         }
-        self.hold_reference(dynamics, reference, state)?;
+        let measured = Motors { theta: state.theta, thetad: state.thetad };
         match &mut self.law {
-            Law::None => {}
+            Law::None => return Ok(()),
             Law::Pd { gravity_compensation } => {
-                for (i, (joint, point)) in self.joints.joints.iter().zip(reference).enumerate() {
+                for (i, (joint, point)) in self.joints.joints.iter().zip(at.points).enumerate() {
                     let k = joint.v;
                     let (target, feed) =
                         if *gravity_compensation { (self.theta[k], self.feed_forward[k]) } else { (point.q, 0.0) };
                     tau[k] = feed + self.kp[i] * (target - state.theta[k]) + self.kd[i] * (point.qd - state.thetad[k]);
                 }
             }
-            Law::ComputedTorque { rigid } => {
-                for (i, (joint, point)) in self.joints.joints.iter().zip(reference).enumerate() {
+            Law::ComputedTorque { rigid, scratch } => {
+                for (joint, point) in self.joints.joints.iter().zip(at.points) {
                     let k = joint.v;
                     // Where the link would be if the transmission gave as it does at rest.
                     self.q[joint.q] = state.theta[k] - (self.theta[k] - point.q);
-                    self.qdd[k] = point.qdd
-                        + self.kp[i] * (point.q - self.q[joint.q])
-                        + self.kd[i] * (point.qd - state.thetad[k]);
+                    (self.reference[k], self.reference_rate[k], self.qdd[k]) = (point.q, point.qd, point.qdd);
                 }
-                let measured = State { q: &self.q, qd: state.thetad, theta: &self.theta, thetad: state.thetad };
-                let accel = Acceleration { qdd: &self.qdd, thetadd: &self.qdd };
-                rigid.inverse(measured, accel, External::none(), Inverse { tau_j: &mut self.unused, tau })?;
+                let law = ComputedTorque { kp: &self.kp, kd: &self.kd };
+                let desired = Joints { q: &self.reference, qd: &self.reference_rate };
+                let now = Joints { q: &self.q, qd: state.thetad };
+                law.torque(&rigid.view(), desired, now, &mut self.qdd, scratch, &mut self.unused, tau)?;
             }
+            Law::TwoDegreeOfFreedom(feedforward) => {
+                feedforward.tick(at.references, at.t)?;
+                tau.copy_from_slice(feedforward.tau());
+                Pd { kp: &self.kp, kd: &self.kd }.add(feedforward.motors(), measured, tau)?;
+            }
+            Law::FeedbackLinearization(law) => law.tick(at.references, at.t, state, tau)?,
         }
         self.limit(tau);
         Ok(())
@@ -179,8 +230,8 @@ impl Control {
     /// a controller. A sampled loop is unstable once this exceeds twice its rate.
     pub fn damping_rate(&self, joint: usize, inertia: f64) -> f64 {
         match self.law {
-            Law::None => 0.0,
-            Law::Pd { .. } => self.kd[joint] / inertia,
+            Law::None | Law::FeedbackLinearization(_) => 0.0,
+            Law::Pd { .. } | Law::TwoDegreeOfFreedom(_) => self.kd[joint] / inertia,
             Law::ComputedTorque { .. } => self.kd[joint],
         }
     }
