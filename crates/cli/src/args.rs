@@ -2,10 +2,12 @@
 
 mod analyze;
 mod bench;
+mod inverse;
 mod linear;
 
 pub use analyze::Analyze;
 pub use bench::Bench;
+pub use inverse::Inverse;
 pub use linear::{Frf, Linearize, Modes, Pose};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -38,6 +40,7 @@ pub enum Command {
     Simulate(Simulate),
     Info(Info),
     Eval(Eval),
+    Inverse(Inverse),
     Linearize(Linearize),
     Modes(Modes),
     Frf(Frf),

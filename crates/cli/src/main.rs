@@ -19,6 +19,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => commands::simulate::run(args, cli.quiet),
         Command::Info(args) => commands::info::run(args, cli.quiet),
         Command::Eval(args) => commands::eval::run(args, cli.quiet),
+        Command::Inverse(args) => commands::inverse::run(args, cli.quiet),
         Command::Linearize(args) => commands::linearize::run(args, cli.quiet),
         Command::Modes(args) => commands::modes::run(args, cli.quiet),
         Command::Frf(args) => commands::frf::run(args, cli.quiet),

@@ -1,11 +1,12 @@
 //! `gyroflex simulate`: a scenario in, a log and a summary out.
 
+use super::logs;
 use crate::args::Simulate;
 use crate::builtin;
 use crate::failure::{Failure, print, say, warn};
 use crate::progress::{STEPS, progress_bar, stop_flag};
 use crate::report::Report;
-use gyroflex_sim::error::{Error, ErrorKind};
+use gyroflex_sim::error::ErrorKind;
 use gyroflex_sim::load::{self, Disk, FileSource, LoadOptions};
 use gyroflex_sim::record::{CsvRecorder, McapRecorder, TeeRecorder};
 use gyroflex_sim::{ScenarioFile, Simulation};
@@ -15,10 +16,11 @@ use std::sync::atomic::Ordering;
 
 pub fn run(args: &Simulate, quiet: bool) -> Result<(), Failure> {
     let (mut simulation, duration) = prepare(args, quiet)?;
-    let log = log_path(args);
-    for written in std::iter::once(&log).chain(&args.csv) {
-        spare_the_input(written, args)?;
-    }
+    let log = match &args.scenario {
+        Some(scenario) => logs::path(args.output.as_deref(), scenario, "mcap"),
+        None => args.output.clone().unwrap_or_else(|| PathBuf::from(builtin::LOG)),
+    };
+    logs::spare_the_input(&log, args.output.as_deref(), args.csv.as_deref(), args.scenario.as_deref())?;
     let stop = stop_flag(quiet, "complete the log");
     let info = simulation.run_info();
     let mut recorder = TeeRecorder::new().with(McapRecorder::create(&log, info.clone())?);
@@ -81,37 +83,4 @@ fn prepare(args: &Simulate, quiet: bool) -> Result<(Simulation, f64), Failure> {
     let simulation = Simulation::new(&robot, &file)?;
     warn(simulation.warnings(), quiet);
     Ok((simulation, file.scenario.duration))
-}
-
-/// The log beside the user, not beside the scenario: that folder may not be his.
-fn log_path(args: &Simulate) -> PathBuf {
-    match (&args.output, &args.scenario) {
-        (Some(output), _) => output.clone(),
-        (None, None) => PathBuf::from(builtin::LOG),
-        (None, Some(scenario)) => {
-            PathBuf::from(scenario.file_stem().unwrap_or(scenario.as_os_str())).with_extension("mcap")
-        }
-    }
-}
-
-/// Refuses to write over the scenario, or log and CSV over each other.
-fn spare_the_input(written: &Path, args: &Simulate) -> Result<(), Error> {
-    let same = |other: &Path| match (written.canonicalize(), other.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => written == other,
-    };
-    let problem = if args.scenario.as_deref().is_some_and(same) {
-        "it is the scenario, and would be overwritten"
-    } else if args.csv.as_deref() == args.output.as_deref() && args.csv.is_some() {
-        "it cannot be the MCAP log and the CSV file at once"
-    } else {
-        return Ok(());
-    };
-    Err(Error {
-        kind: ErrorKind::Io,
-        file: written.display().to_string(),
-        element: "output".to_owned(),
-        problem: problem.to_owned(),
-        remedy: "name another file".to_owned(),
-    })
 }

@@ -1,0 +1,93 @@
+//! `gyroflex inverse`: a scenario's reference in, motor motions and torques out.
+
+use super::logs;
+use crate::args::Inverse;
+use crate::failure::{Failure, print, say, warn};
+use crate::progress::{STEPS, progress_bar, stop_flag};
+use gyroflex_sim::ScenarioFile;
+use gyroflex_sim::error::{Error, ErrorKind};
+use gyroflex_sim::inverse::{InverseRun, InverseSummary};
+use gyroflex_sim::load::{self, Disk, LoadOptions};
+use gyroflex_sim::record::{CsvRecorder, McapRecorder, TeeRecorder};
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+
+pub fn run(args: &Inverse, quiet: bool) -> Result<(), Failure> {
+    let mut file = ScenarioFile::load(&Disk, &args.scenario)?;
+    if let Some(duration) = args.duration {
+        file.scenario.duration = duration;
+    }
+    let robot = load::load(&file.robot_path(), &LoadOptions::default())?;
+    warn(&robot.warnings, quiet);
+    let mut inverse = InverseRun::new(&robot, &file, args.model.map(Into::into), args.damping)?;
+    warn(&inverse.warnings, quiet);
+
+    let log = logs::path(args.output.as_deref(), &args.scenario, "inverse.mcap");
+    logs::spare_the_input(&log, args.output.as_deref(), args.csv.as_deref(), Some(&args.scenario))?;
+    let stop = stop_flag(quiet, "complete the log");
+    let info = inverse.run_info();
+    let mut recorder = TeeRecorder::new().with(McapRecorder::create(&log, info.clone())?);
+    if let Some(csv) = &args.csv {
+        recorder = recorder.with(CsvRecorder::create(csv, info)?);
+    }
+    let bar = progress_bar(quiet, "inverting");
+    let result = inverse.run(&mut recorder, &mut |t| {
+        bar.set_position((t / file.scenario.duration * STEPS as f64) as u64);
+        if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    bar.finish_and_clear();
+    let summary = result.inspect_err(|e| {
+        if e.kind == ErrorKind::Diverged {
+            say(&format!("log up to there: {}", log.display()));
+        }
+    })?;
+    print(&if args.json {
+        json(&summary, &log, args.csv.as_deref())?
+    } else {
+        text(&summary, &log, args.csv.as_deref())
+    })?;
+    if summary.interrupted {
+        say(&format!("interrupted at t = {} s; the log is complete up to there", summary.end_time));
+        return Err(Failure::Interrupted);
+    }
+    Ok(())
+}
+
+fn json(summary: &InverseSummary, log: &Path, csv: Option<&Path>) -> Result<String, Error> {
+    let mut json = serde_json::to_value(summary)?;
+    json["log"] = log.display().to_string().into();
+    json["csv"] = csv.map(|p| p.display().to_string()).into();
+    Ok(serde_json::to_string_pretty(&json)?)
+}
+
+fn text(s: &InverseSummary, log: &Path, csv: Option<&Path>) -> String {
+    let mut out =
+        format!("{}, inverse of the {} model: {} s, {:.1} us a call\n", s.robot, s.model, s.end_time, s.time_per_call);
+    let widest = s.joints.iter().map(|j| j.name.chars().count()).max().unwrap_or(0).max("joint".len());
+    let mut line = |cells: [&str; 6]| {
+        let [name, derivatives, motor, joint, deflection, speed] = cells;
+        let text =
+            format!("  {name:<widest$}  {derivatives:>11}  {motor:>11}  {joint:>12}  {deflection:>11}  {speed:>11}");
+        out.push_str(text.trim_end());
+        out.push('\n');
+    };
+    line(["joint", "derivatives", "motor", "transmission", "deflection", "motor speed"]);
+    for j in &s.joints {
+        let given = j.derivatives_given.map_or_else(|| "any".to_owned(), |n| n.to_string());
+        let [motor, joint, deflection, speed] =
+            [j.peak_torque, j.peak_transmission_torque, j.peak_deflection, j.peak_motor_speed]
+                .map(|x| format!("{x:.4e}"));
+        let derivatives = format!("{} of {given}", j.derivatives_needed);
+        line([&j.name, &derivatives, &motor, &joint, &deflection, &speed]);
+    }
+    out.push_str(
+        "  (derivatives needed and given; largest torques in N m, deflections in rad, speeds in rad/s, link side)\n",
+    );
+    let _ = write!(out, "log: {} ({} samples)", log.display(), s.samples);
+    if let Some(csv) = csv {
+        let _ = write!(out, "\ncsv: {}", csv.display());
+    }
+    out
+}
