@@ -14,6 +14,7 @@ pub mod info;
 pub mod linearize;
 pub mod load;
 pub mod loads;
+pub mod lqr;
 pub mod modes;
 mod ode;
 mod random;
