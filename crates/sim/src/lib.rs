@@ -15,6 +15,7 @@ pub mod inverse;
 pub mod linearize;
 pub mod load;
 pub mod loads;
+pub mod lqr;
 pub mod modes;
 mod ode;
 mod random;

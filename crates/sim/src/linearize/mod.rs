@@ -27,6 +27,7 @@ pub use discrete::{zero_order_hold, zero_order_hold_of};
 pub use extremes::Extreme;
 pub use friction::KeptFriction;
 pub use layout::Layout;
+pub(crate) use natural::eigenvalues;
 pub use natural::{ModeKind, NaturalMode, natural_modes};
 pub use outputs::Output;
 pub use partials::{Derivatives, Partials, partials};

@@ -84,7 +84,7 @@ pub fn natural_modes(linear: &Linearization) -> Result<Vec<NaturalMode>, Error> 
 }
 
 /// All eigenvalues of a matrix.
-pub(super) fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, Error> {
+pub(crate) fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, Error> {
     let n = a.nrows();
     if n == 0 {
         return Ok(Vec::new());

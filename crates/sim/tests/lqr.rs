@@ -1,0 +1,226 @@
+//! Laws of linear-quadratic regulators.
+
+mod arm;
+
+use gyroflex_sim::Fidelity;
+use gyroflex_sim::linearize::{KeptFriction, Linearizer};
+use gyroflex_sim::load::{LoadOptions, load};
+use gyroflex_sim::lqr::{Deviations, Regulator, Riccati, riccati};
+use nalgebra::{DMatrix, DVector};
+use std::path::Path;
+
+/// Numbers between −1 and 1 without a pattern, the same ones for the same seed.
+fn numbers(seed: u64, n: usize) -> Vec<f64> {
+    (0..n)
+        .map(|i| (12.9898 * (seed + 1) as f64 + 78.233 * (i + 1) as f64).sin() * 43758.5453)
+        .map(|x| 2.0 * x.fract() - x.signum())
+        .collect()
+}
+
+fn named(i: usize) -> String {
+    format!("x{i}")
+}
+
+/// `A, B, Q, R` of a system without a pattern, unstable for most seeds.
+fn system(seed: u64) -> [DMatrix<f64>; 4] {
+    let (n, m) = (1 + seed as usize % 6, 1 + seed as usize % 3);
+    let square = |seed: u64, n: usize| {
+        let root = DMatrix::from_vec(n, n, numbers(seed, n * n));
+        &root * root.transpose() + DMatrix::identity(n, n) * 0.1
+    };
+    let a = DMatrix::from_vec(n, n, numbers(seed, n * n)) * 1.5;
+    [a, DMatrix::from_vec(n, m, numbers(seed + 100, n * m)), square(seed + 200, n), square(seed + 300, m)]
+}
+
+fn solve([a, b, q, r]: &[DMatrix<f64>; 4]) -> Riccati {
+    riccati(a, b, q, r, &named).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// How far two matrices are apart, relative to the second.
+fn apart(x: &DMatrix<f64>, y: &DMatrix<f64>) -> f64 {
+    (x - y).norm() / y.norm()
+}
+
+fn radius(a: &DMatrix<f64>) -> f64 {
+    a.complex_eigenvalues().iter().fold(0.0, |most: f64, l| most.max(l.norm()))
+}
+
+/// `b² x² + (r (1 − a²) − q b²) x − q r = 0`, its positive root.
+#[test]
+fn a_scalar_system_has_its_closed_form() {
+    for (a, b, q, r) in [(0.5, 1.0, 1.0, 1.0), (3.0, 0.1, 2.0, 0.5), (-1.2, 40.0, 1e-3, 1e4), (1.0, 1e-3, 1e6, 1e-6)] {
+        let c: f64 = r * (1.0 - a * a) - q * b * b;
+        let root = (c * c + 4.0 * b * b * q * r).sqrt();
+        // Of the two ways to write the root the one that loses no digits.
+        let want = if c > 0.0 { 2.0 * q * r / (c + root) } else { (root - c) / (2.0 * b * b) };
+        let got = solve(&[a, b, q, r].map(|x| DMatrix::from_element(1, 1, x)));
+        assert!((got.x[(0, 0)] / want - 1.0).abs() < 1e-12, "{} is not {want}", got.x[(0, 0)]);
+        assert!((got.gain[(0, 0)] / (a * b * want / (r + b * b * want)) - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn it_is_where_the_cost_of_ever_more_samples_leads() {
+    for seed in 0..30 {
+        let system @ [a, b, q, r] = &system(seed);
+        let got = solve(system);
+        let mut x = DMatrix::zeros(a.nrows(), a.nrows());
+        for _ in 0..3_000 {
+            let inner = (r + b.transpose() * &x * b).try_inverse().expect("it is positive");
+            x = a.transpose() * (&x - &x * b * inner * b.transpose() * &x) * a + q;
+        }
+        assert!(apart(&got.x, &x) < 1e-9, "seed {seed}: {}", apart(&got.x, &x));
+    }
+}
+
+#[test]
+fn no_other_gain_costs_less_and_the_cost_is_the_sum_over_all_samples() {
+    for seed in 0..30 {
+        let system @ [a, b, q, r] = &system(seed);
+        let got = solve(system);
+        let start = DVector::from_vec(numbers(seed + 400, a.nrows()));
+        let cost = |gain: &DMatrix<f64>| {
+            let (mut x, mut sum) = (start.clone(), 0.0);
+            for _ in 0..3_000 {
+                let u = -(gain * &x);
+                sum += x.dot(&(q * &x)) + u.dot(&(r * &u));
+                x = a * &x + b * &u;
+            }
+            sum
+        };
+        let least = start.dot(&(&got.x * &start));
+        assert!((cost(&got.gain) / least - 1.0).abs() < 1e-9, "seed {seed}: {} is not {least}", cost(&got.gain));
+        for i in 0..got.gain.len() {
+            let mut other = got.gain.clone();
+            other[i] += 1e-2 * got.gain.norm();
+            assert!(cost(&other) > least * (1.0 - 1e-12) || cost(&other).is_nan(), "seed {seed}, entry {i}");
+        }
+        let closed = radius(&(a - b * &got.gain));
+        assert!(closed < 1.0 && (closed - got.radius).abs() < 1e-9, "seed {seed}: {closed}, {}", got.radius);
+    }
+}
+
+#[test]
+fn units_of_the_states_do_not_matter() {
+    for seed in 0..30 {
+        let system @ [a, b, q, r] = &system(seed);
+        let plain = solve(system);
+        let n = a.nrows();
+        let unit = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| 10f64.powi(9 * (i as i32 % 3 - 1))));
+        let back = unit.clone().try_inverse().expect("it is a diagonal");
+        let other = solve(&[&unit * a * &back, &unit * b, &back * q * &back, r.clone()]);
+        assert!(apart(&(other.gain * &unit), &plain.gain) < 1e-9, "seed {seed}");
+        assert!(apart(&(&unit * other.x * &unit), &plain.x) < 1e-9, "seed {seed}");
+    }
+}
+
+#[test]
+fn what_no_input_reaches_is_refused_if_it_grows_and_left_alone_if_it_fades() {
+    let system = |slow: f64| {
+        let a = DMatrix::from_row_slice(2, 2, &[1.1, 0.3, 0.0, slow]);
+        let b = DMatrix::from_row_slice(2, 1, &[1.0, 0.0]);
+        riccati(&a, &b, &DMatrix::identity(2, 2), &DMatrix::identity(1, 1), &named)
+    };
+    for slow in [1.0, 1.01, -2.0] {
+        let error = system(slow).expect_err("nothing reaches the second state");
+        assert!(error.problem.contains("`x1`"), "{error}");
+    }
+    assert!(system(0.99).is_ok());
+    // An integrator that costs nothing is never brought back.
+    let [a, b, r] = [DMatrix::identity(1, 1), DMatrix::identity(1, 1), DMatrix::identity(1, 1)];
+    assert!(riccati(&a, &b, &DMatrix::zeros(1, 1), &r, &named).is_err());
+}
+
+#[test]
+fn weights_that_are_none_are_refused() {
+    let [a, b, q, r] = system(4);
+    let nan = a.map(|x| if x == a[0] { f64::NAN } else { x });
+    let bad = [
+        riccati(&nan, &b, &q, &r, &named),
+        riccati(&a, &b, &-&q, &r, &named),
+        riccati(&a, &b, &q, &-&r, &named),
+        riccati(&a, &b.transpose(), &q, &r, &named),
+    ];
+    for result in bad {
+        result.expect_err("it makes no sense");
+    }
+}
+
+const ROBOTS: [&str; 6] = [
+    "iiwa14/robot.yaml",
+    "lwr/robot.yaml",
+    "lwr/loaded.yaml",
+    "lwr/undamped.yaml",
+    "manutec_r3/robot.yaml",
+    "puma560/robot.yaml",
+];
+
+#[test]
+fn the_projects_robots_are_held_in_every_model_and_the_equation_is_solved() {
+    for name in ROBOTS {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots").join(name);
+        let mut robot = load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+        for model in Fidelity::ALL {
+            robot.fidelity = model;
+            for seed in 0..4 {
+                let q = numbers(seed, robot.joints.len());
+                let context = format!("{name}, {}, pose {seed}", model.name());
+                let deviations = Deviations::default();
+                let regulator =
+                    Regulator::new(&robot, &q, 1000.0, &deviations).unwrap_or_else(|e| panic!("{context}: {e}"));
+                assert!(regulator.residual < 1e-9, "{context}: {}", regulator.residual);
+                let Regulator { a, b, cost: x, gain, .. } = &regulator;
+                let closed = radius(&(a - b * gain));
+                assert!(closed < 1.0 && (closed - regulator.radius).abs() < 1e-6, "{context}: {closed}");
+                // Bellman: the cost from here is that of this sample and from the next state.
+                let layout = Linearizer::new(&robot, model, KeptFriction::Viscous).expect("physical").layout().clone();
+                let start = DVector::from_fn(a.nrows(), |i, _| {
+                    let size = if i < layout.positions() { 1e-3 } else { 0.1 };
+                    size * numbers(seed + 50, a.nrows())[i]
+                });
+                let u = -(gain * &start);
+                let next = a * &start + b * &u;
+                let weigh = |x: &DVector<f64>, i: usize| if i < layout.positions() { x[i] / 1e-3 } else { x[i] / 0.1 };
+                let now: f64 =
+                    (0..start.len()).map(|i| weigh(&start, i).powi(2)).sum::<f64>() + (u / 10.0).norm_squared();
+                let (here, there) = (start.dot(&(x * &start)), next.dot(&(x * &next)));
+                assert!((here - there - now).abs() < 1e-8 * here, "{context}: {here} {there} {now}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_deviation_counts_and_those_that_make_no_sense_are_refused() {
+    let robot = arm::arm(false);
+    let q = [0.7, -0.5, 0.2];
+    let gain = |deviations: &Deviations| Regulator::new(&robot, &q, 1000.0, deviations).map(|r| r.gain);
+    let plain = gain(&Deviations::default()).expect("it can be held");
+    let keys: [fn(&mut Deviations) -> &mut f64; 5] = [
+        |d| &mut d.link_position,
+        |d| &mut d.link_velocity,
+        |d| &mut d.motor_position,
+        |d| &mut d.motor_velocity,
+        |d| &mut d.torque,
+    ];
+    for key in keys {
+        let with = |x: f64| {
+            let mut deviations = Deviations::default();
+            *key(&mut deviations) = x;
+            gain(&deviations)
+        };
+        let default = *key(&mut Deviations::default());
+        assert!(apart(&with(3.0 * default).expect("it can be held"), &plain) > 1e-3);
+        for bad in [0.0, -1.0, f64::NAN] {
+            with(bad).expect_err("it makes no sense");
+        }
+    }
+    let free = Deviations { link_velocity: f64::INFINITY, motor_velocity: f64::INFINITY, ..Deviations::default() };
+    gain(&free).expect("positions are enough");
+    for rate in [0.0, -1.0, f64::INFINITY] {
+        Regulator::new(&robot, &q, rate, &Deviations::default()).expect_err("it makes no sense");
+    }
+    let at = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.7, -0.5, 0.2];
+    let floating = Regulator::new(&arm::arm(true), &at, 1000.0, &Deviations::default());
+    assert!(floating.expect_err("no motor holds the root").problem.contains("root floats"));
+}
