@@ -2,6 +2,7 @@
 
 mod inverse;
 mod linearization;
+mod lqr;
 
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
@@ -16,6 +17,7 @@ use gyroflex::dynamics::{External, RneaScratch, State};
 use gyroflex::model::Fidelity;
 use inverse::Feedforward;
 use linearization::Linearization;
+use lqr::Lqr;
 
 /// A controller and what it remembers.
 #[derive(Clone, Debug)]
@@ -44,6 +46,7 @@ enum Law {
     Pd { gravity_compensation: bool },
     ComputedTorque { rigid: Box<OwnedModel>, scratch: Vec<RneaScratch<f64>> },
     TwoDegreeOfFreedom(Box<Feedforward>),
+    Lqr(Box<Lqr>),
     FeedbackLinearization(Box<Linearization>),
 }
 
@@ -59,7 +62,7 @@ pub struct Tick<'a> {
 }
 
 impl Control {
-    /// The controller a scenario asks for.
+    /// The controller a scenario asks for, which ends at time `end` [s].
     ///
     /// # Errors
     /// Gains for unknown joints or none for known ones, a robot that the law cannot drive, and references that are not smooth
@@ -69,6 +72,7 @@ impl Control {
         robot: &Robot,
         joints: &Coordinates,
         references: &References,
+        end: f64,
         keys: &Keys,
     ) -> Result<Self, Error> {
         let n = joints.len();
@@ -95,6 +99,11 @@ impl Control {
                 let feedforward = Feedforward::new(inverse, *rate, robot, joints, references, keys)?;
                 let law = Law::TwoDegreeOfFreedom(Box::new(feedforward));
                 (law, gains(kp, joints, keys, "controller.kp")?, gains(kd, joints, keys, "controller.kd")?)
+            }
+            Controller::Lqr { rate, deviations, inverse } => {
+                let feedforward = Feedforward::new(inverse, *rate, robot, joints, references, keys)?;
+                let law = Lqr::new(feedforward, deviations, *rate, robot, joints, (references, end), keys)?;
+                (Law::Lqr(Box::new(law)), vec![0.0; n], vec![0.0; n])
             }
             Controller::FeedbackLinearization { bandwidth, .. } => {
                 let bandwidth = gains(bandwidth, joints, keys, "controller.bandwidth")?;
@@ -130,13 +139,18 @@ impl Control {
     /// # Errors
     /// An inverse that is not finite.
     pub fn start(&mut self, references: &References) -> Result<Option<Motors<'_, f64>>, Error> {
-        let Law::TwoDegreeOfFreedom(feedforward) = &mut self.law else { return Ok(None) };
+        let feedforward = match &mut self.law {
+            Law::TwoDegreeOfFreedom(feedforward) => feedforward,
+            Law::Lqr(law) => &mut law.feedforward,
+            _ => return Ok(None),
+        };
         feedforward.start(references)?;
         Ok(Some(feedforward.motors()))
     }
 
     /// Motor torques `tau` (`nv` entries, reflected) for the reference and the state, limited to what the drives can give.
-    /// Of the state the controller reads the motor positions and velocities, and the pose of a floating root; feedback linearization reads all.
+    /// Of the state the controller reads the motor positions and velocities, and the pose of a floating root; a regulator and feedback linearization
+    /// read all.
     ///
     /// # Errors
     /// A slice that does not fit the model, or torques that are not finite.
@@ -173,6 +187,7 @@ impl Control {
                 tau.copy_from_slice(feedforward.tau());
                 Pd { kp: &self.kp, kd: &self.kd }.add(feedforward.motors(), measured, tau)?;
             }
+            Law::Lqr(law) => law.tick(at.references, at.t, state, tau)?,
             Law::FeedbackLinearization(law) => law.tick(at.references, at.t, state, tau)?,
         }
         self.limit(tau);
@@ -230,7 +245,7 @@ impl Control {
     /// a controller. A sampled loop is unstable once this exceeds twice its rate.
     pub fn damping_rate(&self, joint: usize, inertia: f64) -> f64 {
         match self.law {
-            Law::None | Law::FeedbackLinearization(_) => 0.0,
+            Law::None | Law::Lqr(_) | Law::FeedbackLinearization(_) => 0.0,
             Law::Pd { .. } | Law::TwoDegreeOfFreedom(_) => self.kd[joint] / inertia,
             Law::ComputedTorque { .. } => self.kd[joint],
         }

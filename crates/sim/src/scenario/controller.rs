@@ -53,6 +53,18 @@ pub enum Controller {
         #[serde(default)]
         inverse: InverseOf,
     },
+    /// The inverse of the elastic robot, and feedback of the whole state around the motion that it finds, with the gain of a linear-quadratic
+    /// regulator for the robot in equilibrium where the references are at the end of the run.
+    Lqr {
+        /// Ticks a second [Hz].
+        #[serde(default = "default_rate")]
+        rate: f64,
+        /// Deviations that count the same in its cost.
+        deviations: LqrDeviations,
+        /// What is inverted.
+        #[serde(default)]
+        inverse: InverseOf,
+    },
     /// Feedback linearization of the reduced model, with the whole state measured: every joint becomes `(s + bandwidth)^r`, `r` being 3 with
     /// damped transmissions and 4 with undamped ones. All joints must be elastic.
     FeedbackLinearization {
@@ -62,6 +74,23 @@ pub enum Controller {
         /// Bandwidths of the closed loops [rad/s].
         bandwidth: Gains,
     },
+}
+
+/// The deviations that a linear-quadratic regulator weighs against each other, by Bryson's rule: each costs as much as the others when it is
+/// this large.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LqrDeviations {
+    /// Of link positions [rad or m].
+    pub link_position: f64,
+    /// Of link velocities [rad/s or m/s].
+    pub link_velocity: f64,
+    /// Of motor positions, reflected [rad or m].
+    pub motor_position: f64,
+    /// Of motor velocities, reflected [rad/s or m/s].
+    pub motor_velocity: f64,
+    /// Of motor torques, reflected [N m or N].
+    pub torque: f64,
 }
 
 /// Which inverse a controller feeds forward.
@@ -83,6 +112,19 @@ impl Default for Controller {
 }
 
 impl Controller {
+    /// Its name in files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::None {} => "none",
+            Self::Pd { gravity_compensation: false, .. } => "pd",
+            Self::Pd { .. } => "pd with gravity",
+            Self::ComputedTorque { .. } => "computed_torque",
+            Self::TwoDegreeOfFreedom { .. } => "two_degree_of_freedom",
+            Self::Lqr { .. } => "lqr",
+            Self::FeedbackLinearization { .. } => "feedback_linearization",
+        }
+    }
+
     /// Ticks a second [Hz]; `None` without a controller.
     pub fn rate(&self) -> Option<f64> {
         match self {
@@ -90,6 +132,7 @@ impl Controller {
             Self::Pd { rate, .. }
             | Self::ComputedTorque { rate, .. }
             | Self::TwoDegreeOfFreedom { rate, .. }
+            | Self::Lqr { rate, .. }
             | Self::FeedbackLinearization { rate, .. } => Some(*rate),
         }
     }

@@ -9,7 +9,7 @@ mod reference;
 mod shaper;
 mod validate;
 
-pub use controller::{Controller, Gains, InverseOf, RigidModel};
+pub use controller::{Controller, Gains, InverseOf, LqrDeviations, RigidModel};
 pub use integrator::Integrator;
 pub use plant::{Factors, Plant};
 pub use read::ScenarioFile;

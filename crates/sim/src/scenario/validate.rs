@@ -95,6 +95,19 @@ impl Check<'_> {
                 self.gains("controller.kd", kd)?;
                 self.not_negative("controller.inverse.damping", inverse.damping)
             }
+            Controller::Lqr { rate, deviations: d, inverse } => {
+                self.positive("controller.rate", *rate)?;
+                for (key, value) in [
+                    ("link_position", d.link_position),
+                    ("link_velocity", d.link_velocity),
+                    ("motor_position", d.motor_position),
+                    ("motor_velocity", d.motor_velocity),
+                    ("torque", d.torque),
+                ] {
+                    self.positive(&format!("controller.deviations.{key}"), value)?;
+                }
+                self.not_negative("controller.inverse.damping", inverse.damping)
+            }
             Controller::FeedbackLinearization { rate, bandwidth } => {
                 self.positive("controller.rate", *rate)?;
                 self.gains("controller.bandwidth", bandwidth)

@@ -77,7 +77,8 @@ impl Simulation {
         let joints = Coordinates::of(&robot);
         let q0 = joints.spread(&scenario.initial.q, &file.keys, "initial.q")?;
         let references = References::of(file, &robot, &joints, &q0, &mut warnings)?;
-        let mut control = Control::new(&scenario.controller, &robot, &joints, &references, &file.keys)?;
+        let mut control =
+            Control::new(&scenario.controller, &robot, &joints, &references, scenario.duration, &file.keys)?;
         let nominal = match &scenario.plant {
             None => None,
             Some(differences) => {

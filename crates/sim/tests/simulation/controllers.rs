@@ -12,7 +12,7 @@ fn torque(robot: &Robot, yaml: &str, reference: &[Point], state: State<f64>) -> 
     let file = scenario(&format!("duration: 1\n{yaml}"));
     let joints = Coordinates::of(robot);
     let references = References::new(reference.iter().map(|point| Trajectory::Hold(point.q)).collect());
-    let mut control = Control::new(&file.scenario.controller, robot, &joints, &references, &file.keys).unwrap();
+    let mut control = Control::new(&file.scenario.controller, robot, &joints, &references, 1.0, &file.keys).unwrap();
     let mut dynamics = Dynamics::new(robot.model(robot.fidelity).unwrap());
     let mut tau = vec![0.0; dynamics.nv()];
     let at = Tick { t: 0.0, references: &references, points: reference };
