@@ -2,11 +2,13 @@
 
 mod analyze;
 mod bench;
+mod compare;
 mod inverse;
 mod linear;
 
 pub use analyze::Analyze;
 pub use bench::Bench;
+pub use compare::Compare;
 pub use inverse::Inverse;
 pub use linear::{Frf, Linearize, Modes, Pose};
 
@@ -45,6 +47,7 @@ pub enum Command {
     Modes(Modes),
     Frf(Frf),
     Analyze(Analyze),
+    Compare(Compare),
     Bench(Bench),
     Export(Export),
     Schema(Schema),

@@ -24,6 +24,7 @@ fn main() -> ExitCode {
         Command::Modes(args) => commands::modes::run(args, cli.quiet),
         Command::Frf(args) => commands::frf::run(args, cli.quiet),
         Command::Analyze(args) => commands::analyze::run(args, cli.quiet),
+        Command::Compare(args) => commands::compare::run(args, cli.quiet),
         Command::Bench(args) => commands::bench::run(args, cli.quiet),
         Command::Export(args) => commands::export::run(args, cli.quiet),
         Command::Schema(args) => commands::schema::run(args),

@@ -19,6 +19,9 @@ pub struct Plant {
     /// rotors with a mass of their own [–].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<Factors>,
+    /// A factor > 0 on mass and inertia of the load it carries [–].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub payload_factor: Option<f64>,
     /// The load it carries, in place of the one in the robot's file; a `mass` of 0 takes that one off.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub payload: Option<PayloadFile>,

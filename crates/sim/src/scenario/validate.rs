@@ -123,6 +123,7 @@ impl Check<'_> {
     }
 
     fn plant(&self, plant: &Plant) -> Result<(), Error> {
+        plant.payload_factor.map_or(Ok(()), |factor| self.positive("plant.payload_factor", factor))?;
         for (key, factors) in [("plant.stiffness", &plant.stiffness), ("plant.mass", &plant.mass)] {
             let all = factors.iter().flat_map(|f| f.numbers(key));
             all.into_iter().try_for_each(|(key, factor)| self.positive(&key, factor))?;

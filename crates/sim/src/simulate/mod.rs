@@ -198,6 +198,9 @@ impl Simulation {
                     add(&key, factor.to_string());
                 }
             }
+            if let Some(factor) = plant.payload_factor {
+                add("plant.payload_factor", factor.to_string());
+            }
             if let Some(load) = &plant.payload {
                 add(
                     "plant.payload",

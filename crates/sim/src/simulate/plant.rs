@@ -55,6 +55,13 @@ pub(super) fn plant(nominal: &Robot, plant: &Plant, keys: &Keys) -> Result<Robot
         let put = payload.put_on(&mut robot, keys, "plant.payload");
         put.map_err(|e| Error { kind: ErrorKind::Scenario, ..e })?;
     }
+    if let Some(factor) = plant.payload_factor {
+        let Some(Payload { body, inertia, .. }) = robot.payload else {
+            let problem = "the robot carries no load, so that the factor changes nothing";
+            return Err(fault(keys, "plant.payload_factor", problem, "give the robot a `payload`, or remove it"));
+        };
+        robot.set_payload(Some((body, inertia.map(|x| x * factor))));
+    }
     Ok(robot)
 }
 
