@@ -25,6 +25,7 @@ pub mod reference;
 pub mod robot;
 pub mod scenario;
 pub mod simulate;
+pub mod zeros;
 
 pub use dynamics::Dynamics;
 pub use error::{Error, ErrorKind};

@@ -25,7 +25,7 @@ pub struct Riccati {
 }
 
 /// The solution of `X = Aᵀ X A − Aᵀ X B (R + Bᵀ X B)⁻¹ Bᵀ X A + Q` for which `A − B K`, `K = (R + Bᵀ X B)⁻¹ Bᵀ X A`, is stable, by the
-/// structure-preserving doubling algorithm (Chu, Fan, Lin, Wang, Int. J. Control 77, 2004, algorithm 3.1). `Q` is symmetric
+/// structure-preserving doubling algorithm (Chu, Fan, Lin, Wang, Int. J. Control 77, 2004). `Q` is symmetric
 /// and not negative, `R` symmetric and positive.
 ///
 /// # Errors
