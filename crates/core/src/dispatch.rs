@@ -32,6 +32,8 @@ impl<T: Scalar> Over<T> for T {
 pub trait Kernel<T: Scalar> {
     /// What it returns.
     type Output;
+    /// Whether it is compiled for AVX-512 as well as for AVX2: kernels of which there are many, and that gain nothing from it, are not.
+    const WIDE: bool = true;
     /// Runs it. Implementations are inlined, down to the last operation, into code compiled for the processor.
     fn run<F: Over<T>>(self) -> Self::Output;
 }
@@ -56,7 +58,7 @@ mod x86_64 {
     /// With AVX-512, or with AVX2 and FMA, where the processor has them.
     #[inline(always)]
     pub fn on_best_instructions<T: Fusible, K: Kernel<T>>(kernel: K) -> K::Output {
-        if let Some(v4) = x86::V4::try_new() {
+        if K::WIDE && let Some(v4) = x86::V4::try_new() {
             Simd::vectorize(v4, InFused(kernel, PhantomData))
         } else if let Some(v3) = x86::V3::try_new() {
             Simd::vectorize(v3, InFused(kernel, PhantomData))

@@ -3,5 +3,6 @@
 
 mod control;
 mod laws;
+mod open_loop;
 mod oracles;
 mod smoothness;

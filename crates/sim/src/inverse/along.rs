@@ -79,6 +79,11 @@ impl ReferenceInverse {
         &self.inverse
     }
 
+    /// Sets the deflections of damped transmissions, `nv` entries [rad or m]: for integrators of one's own.
+    pub fn set_deflection(&mut self, deflection: &[f64]) {
+        self.inverse.set_deflection(deflection);
+    }
+
     /// Positions of the links at the last instant: `nq` entries.
     pub fn q(&self) -> &[f64] {
         &self.q

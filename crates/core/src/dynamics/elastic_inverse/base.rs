@@ -22,6 +22,7 @@ pub(super) struct Base<'a, 'm, T: Scalar, const N: usize> {
 
 impl<T: Scalar, const N: usize> Kernel<T> for Base<'_, '_, T, N> {
     type Output = ();
+    const WIDE: bool = false;
 
     #[inline(always)]
     fn run<F: Over<T>>(self) {

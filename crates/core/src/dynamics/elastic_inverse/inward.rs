@@ -18,6 +18,7 @@ pub(super) struct Inward<'a, T: Scalar, const N: usize> {
 
 impl<T: Scalar, const N: usize> Kernel<T> for Inward<'_, T, N> {
     type Output = ();
+    const WIDE: bool = false;
 
     #[inline(always)]
     fn run<F: Over<T>>(self) {

@@ -87,6 +87,7 @@ pub(super) struct Joint<'a, 'o, T: Scalar, const N: usize> {
 
 impl<T: Scalar, const N: usize> Kernel<T> for Joint<'_, '_, T, N> {
     type Output = Result<(), InverseError>;
+    const WIDE: bool = false;
 
     #[inline(always)]
     fn run<F: Over<T>>(self) -> Result<(), InverseError> {

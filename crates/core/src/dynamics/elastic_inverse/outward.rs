@@ -36,6 +36,7 @@ pub(super) fn slide<F: Scalar, const N: usize>(qd: Jet<F, N>) -> Jet<F, N> {
 
 impl<T: Scalar, const N: usize> Kernel<T> for Outward<'_, T, N> {
     type Output = ();
+    const WIDE: bool = false;
 
     #[inline(always)]
     fn run<F: Over<T>>(self) {
