@@ -58,7 +58,9 @@ mod x86_64 {
     /// With AVX-512, or with AVX2 and FMA, where the processor has them.
     #[inline(always)]
     pub fn on_best_instructions<T: Fusible, K: Kernel<T>>(kernel: K) -> K::Output {
-        if K::WIDE && let Some(v4) = x86::V4::try_new() {
+        if K::WIDE
+            && let Some(v4) = x86::V4::try_new()
+        {
             Simd::vectorize(v4, InFused(kernel, PhantomData))
         } else if let Some(v3) = x86::V3::try_new() {
             Simd::vectorize(v3, InFused(kernel, PhantomData))
