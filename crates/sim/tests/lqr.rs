@@ -46,16 +46,33 @@ fn radius(a: &DMatrix<f64>) -> f64 {
 }
 
 /// `b² x² + (r (1 − a²) − q b²) x − q r = 0`, its positive root.
+fn closed_form(a: f64, b: f64, q: f64, r: f64) -> f64 {
+    let c = r * (1.0 - a * a) - q * b * b;
+    let root = (c * c + 4.0 * b * b * q * r).sqrt();
+    // Of the two ways to write the root the one that loses no digits.
+    if c > 0.0 { 2.0 * q * r / (c + root) } else { (root - c) / (2.0 * b * b) }
+}
+
 #[test]
 fn a_scalar_system_has_its_closed_form() {
     for (a, b, q, r) in [(0.5, 1.0, 1.0, 1.0), (3.0, 0.1, 2.0, 0.5), (-1.2, 40.0, 1e-3, 1e4), (1.0, 1e-3, 1e6, 1e-6)] {
-        let c: f64 = r * (1.0 - a * a) - q * b * b;
-        let root = (c * c + 4.0 * b * b * q * r).sqrt();
-        // Of the two ways to write the root the one that loses no digits.
-        let want = if c > 0.0 { 2.0 * q * r / (c + root) } else { (root - c) / (2.0 * b * b) };
+        let want = closed_form(a, b, q, r);
         let got = solve(&[a, b, q, r].map(|x| DMatrix::from_element(1, 1, x)));
         assert!((got.x[(0, 0)] / want - 1.0).abs() < 1e-12, "{} is not {want}", got.x[(0, 0)]);
         assert!((got.gain[(0, 0)] / (a * b * want / (r + b * b * want)) - 1.0).abs() < 1e-12);
+    }
+}
+
+/// Two systems side by side, so far apart in size that one is nothing beside the other.
+#[test]
+fn a_slow_state_that_costs_little_is_solved_beside_a_fast_one_that_costs_much() {
+    let ([a, b, q, r], diagonal) = ([[0.5, 0.9999], [1.0, 1e-4], [1e20, 1e-20], [1e20, 1e-20]], |x: [f64; 2]| {
+        DMatrix::from_diagonal(&DVector::from_vec(x.to_vec()))
+    });
+    let got = solve(&[a, b, q, r].map(diagonal));
+    for i in 0..2 {
+        let want = closed_form(a[i], b[i], q[i], r[i]);
+        assert!((got.x[(i, i)] / want - 1.0).abs() < 1e-10, "{i}: {} is not {want}", got.x[(i, i)]);
     }
 }
 
@@ -126,9 +143,24 @@ fn what_no_input_reaches_is_refused_if_it_grows_and_left_alone_if_it_fades() {
         assert!(error.problem.contains("`x1`"), "{error}");
     }
     assert!(system(0.99).is_ok());
-    // An integrator that costs nothing is never brought back.
-    let [a, b, r] = [DMatrix::identity(1, 1), DMatrix::identity(1, 1), DMatrix::identity(1, 1)];
-    assert!(riccati(&a, &b, &DMatrix::zeros(1, 1), &r, &named).is_err());
+}
+
+/// Least cost is not reason enough to bring back what costs nothing.
+#[test]
+fn motions_that_cost_nothing_are_refused_unless_they_fade() {
+    let system = |free: f64| {
+        let a = DMatrix::from_row_slice(3, 3, &[0.5, 0.1, 0.0, 0.0, 0.9, 0.0, 0.0, 0.0, free]);
+        let b = DMatrix::from_row_slice(3, 1, &[1.0, 1.0, 1.0]);
+        let q = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 2.0, 0.0]));
+        riccati(&a, &b, &q, &DMatrix::identity(1, 1), &named)
+    };
+    for free in [1.0, -1.0, 1.3, 2.0] {
+        let error = system(free).expect_err("nothing pays for the third state");
+        assert!(error.problem.contains("`x2`"), "{error}");
+    }
+    assert!(system(0.95).is_ok());
+    let one = DMatrix::identity(1, 1);
+    assert!(riccati(&one, &one, &DMatrix::zeros(1, 1), &one, &named).is_err(), "an integrator");
 }
 
 #[test]
