@@ -65,8 +65,7 @@ pub fn riccati(
     if radius >= 1.0 - MARGIN {
         return Err(free(closed, names));
     }
-    // Also where it is not a number.
-    if !(residual < RESIDUAL) {
+    if residual.is_nan() || residual > RESIDUAL {
         return Err(hopeless(&x, names));
     }
     let Some(mut gain) = inputs.solve_upper_triangular(&gain) else { return Err(weights("R")) };

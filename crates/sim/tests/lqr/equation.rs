@@ -1,21 +1,8 @@
-//! Laws of linear-quadratic regulators.
+//! Laws of the discrete algebraic Riccati equation.
 
-mod arm;
-
-use gyroflex_sim::Fidelity;
-use gyroflex_sim::linearize::{KeptFriction, Linearizer};
-use gyroflex_sim::load::{LoadOptions, load};
-use gyroflex_sim::lqr::{Deviations, Regulator, Riccati, riccati};
+use crate::{apart, numbers, radius};
+use gyroflex_sim::lqr::{Riccati, riccati};
 use nalgebra::{DMatrix, DVector};
-use std::path::Path;
-
-/// Numbers between −1 and 1 without a pattern, the same ones for the same seed.
-fn numbers(seed: u64, n: usize) -> Vec<f64> {
-    (0..n)
-        .map(|i| (12.9898 * (seed + 1) as f64 + 78.233 * (i + 1) as f64).sin() * 43758.5453)
-        .map(|x| 2.0 * x.fract() - x.signum())
-        .collect()
-}
 
 fn named(i: usize) -> String {
     format!("x{i}")
@@ -34,15 +21,6 @@ fn system(seed: u64) -> [DMatrix<f64>; 4] {
 
 fn solve([a, b, q, r]: &[DMatrix<f64>; 4]) -> Riccati {
     riccati(a, b, q, r, &named).unwrap_or_else(|e| panic!("{e}"))
-}
-
-/// How far two matrices are apart, relative to the second.
-fn apart(x: &DMatrix<f64>, y: &DMatrix<f64>) -> f64 {
-    (x - y).norm() / y.norm()
-}
-
-fn radius(a: &DMatrix<f64>) -> f64 {
-    a.complex_eigenvalues().iter().fold(0.0, |most: f64, l| most.max(l.norm()))
 }
 
 /// `b² x² + (r (1 − a²) − q b²) x − q r = 0`, its positive root.
@@ -176,83 +154,4 @@ fn weights_that_are_none_are_refused() {
     for result in bad {
         result.expect_err("it makes no sense");
     }
-}
-
-const ROBOTS: [&str; 6] = [
-    "iiwa14/robot.yaml",
-    "lwr/robot.yaml",
-    "lwr/loaded.yaml",
-    "lwr/undamped.yaml",
-    "manutec_r3/robot.yaml",
-    "puma560/robot.yaml",
-];
-
-#[test]
-fn the_projects_robots_are_held_in_every_model_and_the_equation_is_solved() {
-    for name in ROBOTS {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots").join(name);
-        let mut robot = load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"));
-        for model in Fidelity::ALL {
-            robot.fidelity = model;
-            for seed in 0..4 {
-                let q = numbers(seed, robot.joints.len());
-                let context = format!("{name}, {}, pose {seed}", model.name());
-                let deviations = Deviations::default();
-                let regulator =
-                    Regulator::new(&robot, &q, 1000.0, &deviations).unwrap_or_else(|e| panic!("{context}: {e}"));
-                assert!(regulator.residual < 1e-9, "{context}: {}", regulator.residual);
-                let Regulator { a, b, cost: x, gain, .. } = &regulator;
-                let closed = radius(&(a - b * gain));
-                assert!(closed < 1.0 && (closed - regulator.radius).abs() < 1e-6, "{context}: {closed}");
-                // Bellman: the cost from here is that of this sample and from the next state.
-                let layout = Linearizer::new(&robot, model, KeptFriction::Viscous).expect("physical").layout().clone();
-                let start = DVector::from_fn(a.nrows(), |i, _| {
-                    let size = if i < layout.positions() { 1e-3 } else { 0.1 };
-                    size * numbers(seed + 50, a.nrows())[i]
-                });
-                let u = -(gain * &start);
-                let next = a * &start + b * &u;
-                let weigh = |x: &DVector<f64>, i: usize| if i < layout.positions() { x[i] / 1e-3 } else { x[i] / 0.1 };
-                let now: f64 =
-                    (0..start.len()).map(|i| weigh(&start, i).powi(2)).sum::<f64>() + (u / 10.0).norm_squared();
-                let (here, there) = (start.dot(&(x * &start)), next.dot(&(x * &next)));
-                assert!((here - there - now).abs() < 1e-8 * here, "{context}: {here} {there} {now}");
-            }
-        }
-    }
-}
-
-#[test]
-fn every_deviation_counts_and_those_that_make_no_sense_are_refused() {
-    let robot = arm::arm(false);
-    let q = [0.7, -0.5, 0.2];
-    let gain = |deviations: &Deviations| Regulator::new(&robot, &q, 1000.0, deviations).map(|r| r.gain);
-    let plain = gain(&Deviations::default()).expect("it can be held");
-    let keys: [fn(&mut Deviations) -> &mut f64; 5] = [
-        |d| &mut d.link_position,
-        |d| &mut d.link_velocity,
-        |d| &mut d.motor_position,
-        |d| &mut d.motor_velocity,
-        |d| &mut d.torque,
-    ];
-    for key in keys {
-        let with = |x: f64| {
-            let mut deviations = Deviations::default();
-            *key(&mut deviations) = x;
-            gain(&deviations)
-        };
-        let default = *key(&mut Deviations::default());
-        assert!(apart(&with(3.0 * default).expect("it can be held"), &plain) > 1e-3);
-        for bad in [0.0, -1.0, f64::NAN] {
-            with(bad).expect_err("it makes no sense");
-        }
-    }
-    let free = Deviations { link_velocity: f64::INFINITY, motor_velocity: f64::INFINITY, ..Deviations::default() };
-    gain(&free).expect("positions are enough");
-    for rate in [0.0, -1.0, f64::INFINITY] {
-        Regulator::new(&robot, &q, rate, &Deviations::default()).expect_err("it makes no sense");
-    }
-    let at = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.7, -0.5, 0.2];
-    let floating = Regulator::new(&arm::arm(true), &at, 1000.0, &Deviations::default());
-    assert!(floating.expect_err("no motor holds the root").problem.contains("root floats"));
 }
