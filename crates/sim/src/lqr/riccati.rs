@@ -29,8 +29,8 @@ pub struct Riccati {
 /// and not negative, `R` symmetric and positive.
 ///
 /// # Errors
-/// Matrices that do not fit or are not finite, weights that are none, and a system that no input stabilises or that moves in a
-/// way that costs nothing; the state that it moves most is named by `names`.
+/// Matrices that do not fit or are not finite, weights that are none, and a system that no input stabilises or whose unstable
+/// motions cost nothing; `names` are those of the states.
 pub fn riccati(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
@@ -60,9 +60,12 @@ pub fn riccati(
     let Some(inner) = Cholesky::new(inner) else { return Err(hopeless(&x, names)) };
     let gain = inner.solve(&(&bx * &a));
     let closed = &a - &b * &gain;
-    let residual = (a.transpose() * &x * &closed + &q - &x).norm() / x.norm();
+    let residual = (a.transpose() * &x * &closed + &q - &x).norm() / x.norm().max(f64::MIN_POSITIVE);
     let radius = eigenvalues(&closed)?.iter().fold(0.0, |most: f64, l| most.max(l.norm()));
-    if !(residual < RESIDUAL && radius < 1.0 - MARGIN) {
+    if radius >= 1.0 - MARGIN {
+        return Err(free(closed, names));
+    }
+    if residual.is_nan() || residual > RESIDUAL {
         return Err(hopeless(&x, names));
     }
     let Some(mut gain) = inputs.solve_upper_triangular(&gain) else { return Err(weights("R")) };
@@ -128,12 +131,24 @@ fn weights(which: &str) -> Error {
 
 /// Where the cost grows without end, the state that it is due to most.
 fn hopeless(x: &DMatrix<f64>, names: &dyn Fn(usize) -> String) -> Error {
-    let size = |x: f64| if x.is_finite() { x } else { f64::INFINITY };
-    let most = (0..x.nrows()).max_by(|i, j| size(x[(*i, *i)]).total_cmp(&size(x[(*j, *j)]))).unwrap_or(0);
-    fault(
-        format!("no input stabilises the system, or a motion of it costs nothing, most of all `{}`", names(most)),
-        "drive every joint that can move, and give every position an allowed deviation",
-    )
+    let most = largest(x.nrows(), |i| if x[(i, i)].is_finite() { x[(i, i)] } else { f64::INFINITY });
+    let problem = format!("no input stabilises the system, least of all `{}`", names(most));
+    fault(problem, "drive every joint that can move, or take a model without what no motor reaches")
+}
+
+/// Where a motion does not fade although the cost is at its least, the state that takes the largest part in it.
+fn free(mut closed: DMatrix<f64>, names: &dyn Fn(usize) -> String) -> Error {
+    for _ in 0..DOUBLINGS {
+        closed = &closed * &closed;
+        closed.unscale_mut(closed.norm());
+    }
+    let most = largest(closed.nrows(), |i| closed.row(i).norm());
+    let problem = format!("a motion of the system costs nothing, and is left as it is, most of all `{}`", names(most));
+    fault(problem, "let every position have its cost: an allowed deviation that is finite")
+}
+
+fn largest(n: usize, size: impl Fn(usize) -> f64) -> usize {
+    (0..n).max_by(|i, j| size(*i).total_cmp(&size(*j))).unwrap_or(0)
 }
 
 fn fault(problem: String, remedy: &str) -> Error {

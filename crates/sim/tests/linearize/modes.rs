@@ -148,7 +148,7 @@ fn the_projects_robots_have_all_their_modes_at_any_pose_fixed_and_floating() {
             }
         }
     }
-    assert_eq!(count, 6 * 4 * 10);
+    assert_eq!(count, 8 * 4 * 10);
 }
 
 #[test]

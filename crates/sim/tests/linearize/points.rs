@@ -3,9 +3,10 @@
 use crate::{arms, assert_close, pose, single_link};
 use gyroflex::dynamics::{External, Forward};
 use gyroflex_sim::coordinates::Coordinates;
-use gyroflex_sim::linearize::{KeptFriction, OperatingPoint, ReferenceMotion};
+use gyroflex_sim::linearize::{KeptFriction, OperatingPoint, Output, ReferenceMotion};
 use gyroflex_sim::load::{Disk, LoadOptions, load};
 use gyroflex_sim::reference::References;
+use gyroflex_sim::scenario::{Factors, Plant};
 use gyroflex_sim::{Dynamics, ErrorKind, Fidelity, Robot, ScenarioFile};
 use std::path::Path;
 
@@ -118,4 +119,21 @@ fn a_time_outside_of_the_scenario_is_refused() {
         let error = motion.at(t).expect_err("it is outside");
         assert!(error.remedy.contains("from 0 to"), "{error}");
     }
+}
+
+/// A linear model along a reference is of the robot that the controller knows.
+#[test]
+fn the_plant_of_a_scenario_does_not_act_on_the_linear_model_and_the_user_learns_of_it() {
+    let (robot, file) = tracking();
+    let mut with = file.clone();
+    with.scenario.plant = Some(Plant { stiffness: Some(Factors::All(0.5)), ..Plant::default() });
+    let at = |file: &ScenarioFile| {
+        let mut motion = ReferenceMotion::new(&robot, file, None, KeptFriction::All).expect("it fits");
+        let point = motion.at(0.4).expect("it is within");
+        let linear = motion.linearizer().linearize(&point, &Output::defaults()).expect("it fits");
+        (linear, motion.warnings.iter().any(|w| w.element == "plant"))
+    };
+    let ((plain, silent), (linear, told)) = (at(&file), at(&with));
+    assert_eq!(plain, linear);
+    assert_eq!((silent, told), (false, true));
 }
