@@ -33,11 +33,15 @@ const STEP_END: f64 = 0.5;
 /// How much larger deviations from the path are drawn than they are.
 const MAGNIFIED: f64 = 10.0;
 
-/// What is drawn: torques of figure 6, runs of figure 7 by controller.
+/// What is drawn.
 pub struct Content<'a> {
+    /// Figure 6.
     pub torques: &'a Torques,
+    /// Figure 7, left: a run under each of the [`LAWS`].
     pub positioning: &'a [Run],
+    /// Figure 7, right.
     pub square: &'a Square,
+    /// The same along it.
     pub tracking: &'a [Run],
 }
 

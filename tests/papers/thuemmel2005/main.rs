@@ -111,13 +111,13 @@ fn tracking() -> Result<(Square, Vec<Run>), Box<dyn Error>> {
             let run = follow(law, &square.motion, conditions)?;
             let off = Size::of(run.tip.iter().map(|p| 1e3 * square.distance(*p)));
             let late = Size::of(run.tip.iter().zip(&run.wanted).map(|(a, b)| 1e3 * (*a - *b).norm()));
-            let best = *first.get_or_insert(off);
+            let alone = *first.get_or_insert(off);
             println!(
                 "| {springs} | {rate} | {name} | {:.4} | {:.4} | {:.1} | {:.1} | {:.4} | {:.4} | {:.2} | {:.2} |",
                 off.rms,
                 off.peak,
-                best.rms / off.rms,
-                best.peak / off.peak,
+                alone.rms / off.rms,
+                alone.peak / off.peak,
                 late.rms,
                 late.peak,
                 run.effort,
