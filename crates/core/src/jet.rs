@@ -45,7 +45,7 @@ impl<T: Scalar, const K: usize> Jet<T, K> {
 
     /// The `k`-th derivative; zero beyond the order of the jet.
     pub fn derivative(&self, k: usize) -> T {
-        self.0.get(k).map_or(T::zero(), |c| *c * T::from_f64(1.0 / inverse_factorial(k)))
+        self.0.get(k).map_or(T::zero(), |c| *c * T::from_f64(factorial(k)))
     }
 
     /// The present value.
@@ -115,7 +115,7 @@ impl<T: Scalar, const K: usize> Jet<T, K> {
                 ds = a.mul_add(c.0[k - i], ds);
                 dc = a.mul_add(s.0[k - i], dc);
             }
-            let share = T::from_f64(1.0 / k as f64);
+            let share = T::from_f64(reciprocal(k));
             (s.0[k], c.0[k]) = (ds * share, -(dc * share));
         }
         (s, c)
@@ -132,7 +132,7 @@ impl<T: Scalar, const K: usize> Jet<T, K> {
             for i in 1..=k {
                 sum = (self.0[i] * T::from_f64(i as f64)).mul_add(slopes.0[k - i], sum);
             }
-            f.0[k] = sum * T::from_f64(1.0 / k as f64);
+            f.0[k] = sum * T::from_f64(reciprocal(k));
         }
         f
     }
@@ -141,15 +141,53 @@ impl<T: Scalar, const K: usize> Jet<T, K> {
 /// Coefficients up to which the loops of products are written out.
 const UNROLLED: usize = 9;
 
-/// `1/k!`.
-pub(crate) const fn inverse_factorial(k: usize) -> f64 {
-    let (mut product, mut i) = (1.0, 2);
-    while i <= k {
-        product *= i as f64;
-        i += 1;
-    }
-    1.0 / product
+/// `1/k!`, from a table: without a unit for doubles their arithmetic is slow.
+#[inline(always)]
+pub(crate) fn inverse_factorial(k: usize) -> f64 {
+    INVERSE_FACTORIALS.get(k).map_or(0.0, |x| *x)
 }
+
+/// `k!`, likewise.
+#[inline(always)]
+pub(crate) fn factorial(k: usize) -> f64 {
+    FACTORIALS.get(k).map_or(f64::INFINITY, |x| *x)
+}
+
+/// `1/k`, likewise.
+#[inline(always)]
+pub(crate) fn reciprocal(k: usize) -> f64 {
+    RECIPROCALS.get(k).map_or(1.0 / k as f64, |x| *x)
+}
+
+/// Length of the tables: more than there are coefficients anywhere.
+const TABLE: usize = 40;
+
+const FACTORIALS: [f64; TABLE] = {
+    let (mut table, mut k) = ([1.0; TABLE], 1);
+    while k < TABLE {
+        table[k] = table[k - 1] * k as f64;
+        k += 1;
+    }
+    table
+};
+
+const INVERSE_FACTORIALS: [f64; TABLE] = {
+    let (mut table, mut k) = ([1.0; TABLE], 0);
+    while k < TABLE {
+        table[k] = 1.0 / FACTORIALS[k];
+        k += 1;
+    }
+    table
+};
+
+const RECIPROCALS: [f64; TABLE] = {
+    let (mut table, mut k) = ([f64::INFINITY; TABLE], 1);
+    while k < TABLE {
+        table[k] = 1.0 / k as f64;
+        k += 1;
+    }
+    table
+};
 
 impl<T: Scalar, const K: usize> Add for Jet<T, K> {
     type Output = Self;
@@ -257,7 +295,7 @@ impl<T: Scalar, const K: usize> Scalar for Jet<T, K> {
         let value = self.value().atan2(x.value());
         Self::from_fn(|k| match k {
             0 => value,
-            _ => rate.0[k - 1] * T::from_f64(1.0 / k as f64),
+            _ => rate.0[k - 1] * T::from_f64(reciprocal(k)),
         })
     }
 

@@ -3,6 +3,7 @@
 //! Each gives the relative error at one state; its bound is the one the same law has in the tests for `f32`.
 
 use crate::arm::N;
+use crate::elastic::Elastic;
 use crate::random::Point;
 use crate::scratch::{Accelerations, Scratch, Torques, forward, inverse, mass_matrix};
 use gyroflex::dynamics::{
@@ -174,6 +175,23 @@ fn energy_rate(model: &Model<f32>, p: &Point, scratch: &mut Scratch) -> Result<f
     let power = power(model, p.state(), &p.tau, External::none(), &mut poses)?;
     let size = power.supplied.abs() + power.dissipated + e.kinetic + e.elastic + e.gravity.abs() + 100.0;
     Ok((rate - (power.supplied - power.dissipated)).abs() / size)
+}
+
+/// Torques of the elastic inverse against those of inverse dynamics, the motors moving as the former says.
+pub fn elastic_inverse_is_rnea(
+    model: &Model<f32>,
+    p: &Point,
+    scratch: &mut Scratch,
+    elastic: &mut Elastic,
+) -> Option<f32> {
+    elastic.invert(model, p).ok()?;
+    let [theta, thetad, thetadd] = &elastic.theta;
+    let state = State { q: &p.q, qd: &p.derivatives[0], theta, thetad };
+    let accel = Acceleration { qdd: &p.derivatives[1], thetadd };
+    let mut torques = Torques::default();
+    inverse(model, state, accel, &[], scratch, &mut torques).ok()?;
+    let tau_j = difference(&elastic.tau_j, &torques.tau_j) / norm(&torques.tau_j);
+    Some(worse(tau_j, difference(&elastic.tau, &torques.tau) / norm(&torques.tau)))
 }
 
 /// Largest absolute entry; NaN if any is.

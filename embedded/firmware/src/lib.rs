@@ -4,8 +4,10 @@
 
 pub mod arm;
 pub mod controller;
+pub mod elastic;
 pub mod laws;
 pub mod observer;
+pub mod orders;
 pub mod plant;
 pub mod random;
 pub mod reference;

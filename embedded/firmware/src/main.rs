@@ -24,6 +24,7 @@ fn main() -> ! {
     hprintln!("loop stack {} bytes, the simulated arm included", board::stack_used());
     report::counts(&board, SEED, &mut verdict);
     report::laws(SEED, &mut verdict);
+    report::elastic_law(SEED, &mut verdict);
     hprintln!("{}", if verdict.held() { "held" } else { "FAILED" });
     board::end(verdict.held())
 }

@@ -37,7 +37,12 @@ pub struct Point {
     pub qdd: [f32; N],
     pub thetadd: [f32; N],
     pub tau: [f32; N],
+    /// `q̇, q̈, q⁽³⁾, …`, for the inverse of the elastic arm.
+    pub derivatives: [[f32; N]; ORDER],
 }
+
+/// Derivatives of the motion that the inverse of the elastic arm needs.
+pub const ORDER: usize = 6;
 
 impl Point {
     /// Sizes as in the tests of the whole project; the transmissions carry torques of the size of the motors'.
@@ -52,6 +57,8 @@ impl Point {
             qdd: dice.all(10.0),
             thetadd: dice.all(10.0),
             tau: dice.all(30.0),
+            // Of some 4 rad/s.
+            derivatives: core::array::from_fn(|row| dice.all(0.5 * [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0][row])),
         }
     }
 

@@ -6,10 +6,11 @@ use crate::motion;
 use core::hint::black_box;
 use cortex_m_semihosting::hprintln;
 use gyroflex::dynamics::placements;
-use gyroflex::model::{Model, SizeError};
+use gyroflex::model::Model;
 use gyroflex::spatial::Transform;
 use gyroflex_firmware::arm::{N, complete, rigid};
-use gyroflex_firmware::laws::{LAWS, worse};
+use gyroflex_firmware::elastic::Elastic;
+use gyroflex_firmware::laws::{LAWS, elastic_inverse_is_rnea, worse};
 use gyroflex_firmware::random::{Dice, Point};
 use gyroflex_firmware::scratch::{Accelerations, Scratch, Torques, forward, inverse, mass_matrix};
 
@@ -60,29 +61,53 @@ pub fn laws(seed: u32, verdict: &mut Verdict) {
     }
 }
 
+/// The inverse of the elastic arm is inverse dynamics at the motion of the motors that it finds.
+pub fn elastic_law(seed: u32, verdict: &mut Verdict) {
+    let (mut dice, mut scratch, mut elastic) = (Dice::new(seed), Scratch::new(), Elastic::new());
+    let mut worst = 0.0;
+    for _ in 0..STATES {
+        let point = Point::random(&mut dice);
+        let error = elastic_inverse_is_rnea(&complete::MODEL, &point, &mut scratch, &mut elastic);
+        worst = worse(worst, error.unwrap_or(f32::NAN));
+    }
+    let mark = verdict.at_most(worst, 1e-3);
+    hprintln!(
+        "law {:<9} {:<36} {:8.1e} of {:.0e}{}",
+        "complete",
+        "elastic inverse and inverse dynamics",
+        worst,
+        1e-3,
+        mark
+    );
+}
+
 /// Instructions of every algorithm, at random states.
 pub fn counts(board: &Board, seed: u32, verdict: &mut Verdict) {
     let (complete, rigid) = (black_box(&complete::MODEL), black_box(&rigid::MODEL));
     let mut scratch = Scratch::new();
     let (mut torques, mut moved) = (Torques::default(), Accelerations::default());
     let (mut matrix, mut poses) = ([[0.0; N]; N], [Transform::identity(); N]);
-    let mut count = |name: &str, call: &mut dyn FnMut(&Point) -> Result<(), SizeError>| {
+    let mut count = |name: &str, call: &mut dyn FnMut(&Point) -> bool| {
         let mut dice = Dice::new(seed);
         let (mut count, mut done) = (Count::NONE, true);
         for _ in 0..STATES {
             let point = Point::random(&mut dice);
-            count.add(board, || done &= call(black_box(&point)).is_ok());
+            count.add(board, || done &= call(black_box(&point)));
         }
         verdict.0 &= done;
         show(name, count);
     };
-    count("rnea_complete", &mut |p| inverse(complete, p.state(), p.acceleration(), &[], &mut scratch, &mut torques));
-    count("rnea_rigid", &mut |p| inverse(rigid, p.state(), p.acceleration(), &[], &mut scratch, &mut torques));
-    count("aba_complete", &mut |p| forward(complete, p.state(), &p.tau, &[], &mut scratch, &mut moved));
-    count("aba_rigid", &mut |p| forward(rigid, p.state(), &p.tau, &[], &mut scratch, &mut moved));
-    count("crba", &mut |p| mass_matrix(complete, &p.q, &mut scratch, &mut matrix));
-    count("placements", &mut |p| placements(complete, &p.q, &mut poses));
-    let _ = black_box((torques, moved, matrix, poses));
+    count("rnea_complete", &mut |p| {
+        inverse(complete, p.state(), p.acceleration(), &[], &mut scratch, &mut torques).is_ok()
+    });
+    count("rnea_rigid", &mut |p| inverse(rigid, p.state(), p.acceleration(), &[], &mut scratch, &mut torques).is_ok());
+    count("aba_complete", &mut |p| forward(complete, p.state(), &p.tau, &[], &mut scratch, &mut moved).is_ok());
+    count("aba_rigid", &mut |p| forward(rigid, p.state(), &p.tau, &[], &mut scratch, &mut moved).is_ok());
+    count("crba", &mut |p| mass_matrix(complete, &p.q, &mut scratch, &mut matrix).is_ok());
+    count("placements", &mut |p| placements(complete, &p.q, &mut poses).is_ok());
+    let mut elastic = Elastic::new();
+    count("elastic_inverse6", &mut |p| elastic.invert(complete, p).is_ok());
+    let _ = black_box((elastic, torques, moved, matrix, poses));
 }
 
 /// The 1 kHz loop.
@@ -104,5 +129,5 @@ pub fn motion(board: &Board, verdict: &mut Verdict) {
 }
 
 fn show(name: &str, count: Count) {
-    hprintln!("count {:<14} {:>8} {:>8}", name, count.least, count.most);
+    hprintln!("count {:<16} {:>8} {:>8}", name, count.least, count.most);
 }

@@ -165,3 +165,15 @@ fn perturbing_the_highest_derivative_is_felt_and_the_next_is_not() {
         assert_orders_are_exact("five perpendicular axes", &spec, Fidelity::Complete);
     }
 }
+
+#[path = "../../../embedded/firmware/src/orders.rs"]
+mod firmware;
+
+/// The table that the firmware holds is that of its arm.
+#[test]
+fn the_orders_in_the_firmware_are_those_of_its_arm() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots/iiwa14/robot.yaml");
+    let robot = gyroflex_sim::load::load(&path, &Default::default()).expect("the robot loads");
+    let spec = RobotSpec { bodies: &robot.bodies, spring_tables: &robot.spring_tables, gravity: robot.gravity };
+    assert_eq!(smoothness(&spec, Fidelity::Complete, 0, VANISHING), firmware::ORDERS);
+}

@@ -9,6 +9,8 @@ use gyroflex::integrate::integrate;
 use gyroflex::spatial::Transform;
 use gyroflex_firmware::arm::{N, complete};
 use gyroflex_firmware::controller::{Controller, Measured, PERIOD};
+use gyroflex_firmware::elastic::Elastic;
+use gyroflex_firmware::random::{Dice, Point};
 use gyroflex_firmware::reference::Reference;
 
 #[entry]
@@ -20,13 +22,15 @@ fn main() -> ! {
     let mut poses = [Transform::identity(); N];
     let mut next = [0.0; N];
     let mut way = 0.0;
+    let (mut elastic, mut dice) = (Elastic::new(), Dice::new(1));
     loop {
         let measured = black_box(Measured::default());
         // A wrong length is an error, never a panic.
         let tau = controller.step(&reference.at(way, false), &measured);
         let placed = placements(model, &measured.q, &mut poses);
         let moved = integrate(model, &measured.q, &measured.qd, &mut next);
-        black_box((&tau, &placed, &moved, &poses, &next, &controller.observer.contact));
+        let inverted = elastic.invert(model, &Point::random(&mut dice));
+        black_box((&inverted, &elastic.tau, &tau, &placed, &moved, &poses, &next, &controller.observer.contact));
         way += PERIOD;
     }
 }

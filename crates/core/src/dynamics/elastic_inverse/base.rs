@@ -7,7 +7,7 @@ use crate::dispatch::{Kernel, Over};
 use crate::dynamics::External;
 use crate::dynamics::moving::Moving;
 use crate::dynamics::tree::RootMotion;
-use crate::jet::inverse_factorial;
+use crate::jet::{factorial, inverse_factorial, reciprocal};
 use crate::model::{Body, JointKind, Model};
 use crate::spatial::{Force, Motion, Turn, Vec3};
 use crate::{Jet, Scalar};
@@ -54,11 +54,14 @@ impl<T: Scalar, const N: usize> Kernel<T> for Base<'_, '_, T, N> {
                 let mut seen = Vec3::<Jet<F, N>>::zero();
                 set(&mut seen, 0, RootMotion::<F>::of(motion.q, &motion.derivatives[..0]).rot * lift);
                 for k in 0..N.saturating_sub(1) {
-                    let mut turned = Vec3::zero();
-                    for i in 0..=k {
-                        turned += seen.map(|c| c.0[i]).cross(moving.omega.map(|c| c.0[k - i]));
-                    }
-                    set(&mut seen, k + 1, turned.scale(F::from_f64(1.0 / (k + 1) as f64)));
+                    let w = &moving.omega;
+                    let product = |a: &Jet<F, N>, b: &Jet<F, N>| a.convolved(b, k, 0);
+                    let turned = Vec3::new(
+                        product(&seen.y, &w.z) - product(&seen.z, &w.y),
+                        product(&seen.z, &w.x) - product(&seen.x, &w.z),
+                        product(&seen.x, &w.y) - product(&seen.y, &w.x),
+                    );
+                    set(&mut seen, k + 1, turned.scale(F::from_f64(reciprocal(k + 1))));
                 }
                 // From the spatial to the classical acceleration: + ω × v
                 moving.accel.lin = moving.omega.cross_plus(v, v_rate + seen);
@@ -92,7 +95,7 @@ pub(super) fn finish<T: Scalar>(
     for (row, s) in scratch.iter().enumerate().take(out.rows) {
         for (i, f) in s.f.to_array().into_iter().enumerate() {
             let load = ext.tau.get(row * nv + i).map_or(T::zero(), |x| *x);
-            let wrench = f * T::from_f64(1.0 / inverse_factorial(row)) - load;
+            let wrench = f * T::from_f64(factorial(row)) - load;
             finite &= wrench.is_finite();
             for to in [&mut *out.out.tau_j, &mut *out.out.tau] {
                 if let Some(slot) = to.get_mut(row * nv + i) {

@@ -3,7 +3,7 @@
 use super::outward::{set, speeds};
 use super::{ElasticInverse, ElasticInverseScratch, InverseError, Rates, transmission};
 use crate::dispatch::{Kernel, Over};
-use crate::jet::inverse_factorial;
+use crate::jet::{factorial, inverse_factorial};
 use crate::model::{Body, Drive, Friction, Knot};
 use crate::spatial::Vec3;
 use crate::{Jet, Scalar};
@@ -36,7 +36,7 @@ impl<T: Scalar> JointOutputs<'_, T> {
         let mut finite = true;
         for row in 0..rows {
             let (Some(slot), Some(c)) = (to.get_mut((first_row + row) * nv + k), c.get(row)) else { continue };
-            *slot = (*c * F::from_f64(1.0 / inverse_factorial(row))).store();
+            *slot = (*c * F::from_f64(factorial(row))).store();
             finite &= slot.is_finite();
         }
         finite

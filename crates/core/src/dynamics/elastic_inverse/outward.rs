@@ -3,7 +3,7 @@
 use super::{ElasticInverseScratch, Rates};
 use crate::dispatch::{Kernel, Over};
 use crate::dynamics::moving::Moving;
-use crate::jet::inverse_factorial;
+use crate::jet::{inverse_factorial, reciprocal};
 use crate::model::{Body, JointKind};
 use crate::spatial::{Force, Motion, Turn, Vec3};
 use crate::{Jet, Scalar};
@@ -30,7 +30,7 @@ pub(super) fn speeds<T: Scalar, F: Over<T>, const N: usize>(rates: Rates<T>) -> 
 pub(super) fn slide<F: Scalar, const N: usize>(qd: Jet<F, N>) -> Jet<F, N> {
     Jet::from_fn(|k| match k {
         0 => F::zero(),
-        _ => qd.0[k - 1] * F::from_f64(1.0 / k as f64),
+        _ => qd.0[k - 1] * F::from_f64(reciprocal(k)),
     })
 }
 

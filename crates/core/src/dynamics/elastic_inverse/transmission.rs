@@ -4,7 +4,7 @@
 //! instruction set: there would be one for every number of coefficients and set.
 
 use crate::dispatch::Over;
-use crate::jet::inverse_factorial;
+use crate::jet::{factorial, inverse_factorial, reciprocal};
 use crate::model::{Elastic, Knot, Piece, Rotor, TransmissionError};
 use crate::newton::increasing_root;
 use crate::{Jet, Scalar};
@@ -68,7 +68,7 @@ pub(super) fn deflection<T: Scalar, F: Over<T>, const N: usize>(
     let (mut delta, mut rate) = (now, Jet::zero());
     for k in 0..N {
         rate.0[k] = (-slope).mul_add(delta, torque.0[k]) * share;
-        delta = rate.0[k] * F::from_f64(1.0 / (k + 1) as f64);
+        delta = rate.0[k] * F::from_f64(reciprocal(k + 1));
     }
     Deflection { now, rate, slope }
 }
@@ -132,7 +132,7 @@ fn curved_damped<T: Scalar, const N: usize>(
     let mut growing = Growing::<T, N>::new(&piece, now - piece.start);
     let mut rate = Jet::constant((torque.value() - value) * share);
     for k in 1..N {
-        growing.push(k, rate.0[k - 1] * T::from_f64(1.0 / k as f64));
+        growing.push(k, rate.0[k - 1] * T::from_f64(reciprocal(k)));
         rate.0[k] = (torque.0[k] - slope.mul_add(growing.x.0[k], growing.known(k))) * share;
     }
     Deflection { now, rate, slope }
@@ -168,7 +168,7 @@ pub(super) fn after<T: Scalar, F: Over<T>, const N: usize>(
         outside = (outside - T::from_f64(inverse_factorial(m))) / far;
         let phi = (z * z).select_less(one, *inside, outside);
         power = power * step;
-        let drive = if m == 0 { rate } else { *torque * share * T::from_f64(1.0 / inverse_factorial(m)) };
+        let drive = if m == 0 { rate } else { *torque * share * T::from_f64(factorial(m)) };
         end = (power * phi).mul_add(drive, end);
     }
     end
@@ -217,10 +217,11 @@ pub(super) fn motor<T: Scalar, const N: usize>(
             rest = (-share.0[i]).mul_add(rate.0[k - i], rest);
         }
         rate.0[k] = rest * inverse;
-        if k + 1 < N {
-            let each = cycles * T::from_f64(1.0 / (k + 1) as f64);
-            (sin.0[k + 1], cos.0[k + 1]) = (rate.convolved(&cos, k, 0) * each, -(rate.convolved(&sin, k, 0) * each));
-            share.0[k + 1] = -(amplitude * cycles * cos.0[k + 1]);
+        let each = cycles * T::from_f64(reciprocal(k + 1));
+        let (next_sin, next_cos) = (rate.convolved(&cos, k, 0) * each, -(rate.convolved(&sin, k, 0) * each));
+        let slots = (sin.0.get_mut(k + 1), cos.0.get_mut(k + 1), share.0.get_mut(k + 1));
+        if let (Some(sin), Some(cos), Some(share)) = slots {
+            (*sin, *cos, *share) = (next_sin, next_cos, -(amplitude * cycles * next_cos));
         }
     }
     MotorMotion { now: theta, rate, share }
