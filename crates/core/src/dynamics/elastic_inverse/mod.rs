@@ -114,7 +114,6 @@ pub const MAX_COEFFICIENTS: usize = sizes::LARGEST;
 ///
 /// # Errors
 /// [`InverseError`] names the joint. What was written then means nothing.
-#[expect(clippy::too_many_arguments, reason = "each is a thing of its own")]
 pub fn elastic_inverse<T: Scalar, const MAX: usize>(
     model: &Model<T::Param>,
     smoothness: &Smoothness,
