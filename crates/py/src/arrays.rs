@@ -49,10 +49,10 @@ fn copy(name: &str, value: &Bound<'_, PyAny>, out: &mut [f64], misfit: impl Fn(S
     // An array of float64 is read in place, in any memory layout; the rest NumPy converts first.
     match value.cast::<PyArray1<f64>>() {
         Ok(array) => copy_array(array, out, misfit)?,
-        Err(_) => copy_array(&converted(name, value, &misfit)?, out, misfit)?,
+        Err(_) => copy_array(converted::<1>(name, value, &misfit)?.cast::<PyArray1<f64>>()?, out, misfit)?,
     }
     match out.iter().position(|x| !x.is_finite()) {
-        Some(i) => Err(errors::not_finite(name, i, out[i])),
+        Some(i) => Err(errors::not_finite(name, i.to_string(), out[i])),
         None => Ok(()),
     }
 }
@@ -69,12 +69,41 @@ fn copy_array(array: &Bound<'_, PyArray1<f64>>, out: &mut [f64], misfit: impl Fn
     Ok(())
 }
 
-/// Lists, integers, other floats: a new vector of float64.
-fn converted<'py>(
+/// Rows of so many numbers each, one after the other: as many rows as there are.
+///
+/// # Errors
+/// `ShapeError` if it is no matrix of so many columns, `NotFiniteError` if an entry is not finite, `ArgumentError` if it holds no real
+/// numbers.
+pub(crate) fn read_rows(name: &str, value: &Bound<'_, PyAny>, columns: usize, meaning: &str) -> PyResult<Vec<f64>> {
+    let misfit = |shape: String| {
+        let problem = format!("an array of shape {shape} is given, but (any number, {columns}) is expected");
+        errors::shape(name, problem, meaning)
+    };
+    let array = converted::<2>(name, value, &misfit)?.cast_into::<PyArray2<f64>>()?;
+    if array.shape()[1] != columns {
+        return Err(misfit(text_of(array.shape())));
+    }
+    let numbers: Vec<f64> = array.try_readonly()?.as_array().iter().copied().collect();
+    match numbers.iter().position(|x| !x.is_finite()) {
+        Some(i) => Err(errors::not_finite(name, format!("[{}, {}]", i / columns, i % columns), numbers[i])),
+        None => Ok(numbers),
+    }
+}
+
+/// A shape as Python writes it.
+fn text_of(shape: &[usize]) -> String {
+    match shape {
+        [one] => format!("({one},)"),
+        _ => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// Lists, integers, other floats: a new array of float64 with so many axes.
+fn converted<'py, const AXES: usize>(
     name: &str,
     value: &Bound<'py, PyAny>,
     misfit: &impl Fn(String) -> PyErr,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
+) -> PyResult<Bound<'py, PyAny>> {
     let py = value.py();
     let not_numbers = |problem: String| errors::argument(name, problem, "give an array of real numbers");
     let numpy = py.import("numpy")?;
@@ -86,11 +115,10 @@ fn converted<'py>(
         let dtype = array.dtype().str().unwrap_or_else(|_| PyString::new(py, "?"));
         return Err(not_numbers(format!("an array of {dtype} is given")));
     }
-    if array.ndim() != 1 {
-        return Err(misfit(format!("({})", array.shape().iter().map(usize::to_string).collect::<Vec<_>>().join(", "))));
+    if array.ndim() != AXES {
+        return Err(misfit(text_of(array.shape())));
     }
-    let array = array.call_method1("astype", (numpy::dtype::<f64>(py),))?;
-    array.cast_into::<PyArray1<f64>>().map_err(|e| not_numbers(e.to_string()))
+    array.call_method1("astype", (numpy::dtype::<f64>(py),))
 }
 
 /// A result over the joints.

@@ -45,7 +45,7 @@ pub(crate) fn shape(name: &str, problem: impl Into<String>, remedy: impl Into<St
 }
 
 /// An array argument with an entry that is not a finite number.
-pub(crate) fn not_finite(name: &str, index: usize, value: f64) -> PyErr {
+pub(crate) fn not_finite(name: &str, index: String, value: f64) -> PyErr {
     let element = format!("argument `{name}`, entry {index}");
     classes::NotFiniteError::new_err((format!("{value} is not a finite number"), element, "", "give a finite number"))
 }

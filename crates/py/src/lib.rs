@@ -5,6 +5,7 @@ mod arguments;
 mod arrays;
 mod derivatives;
 mod errors;
+mod inverse;
 mod linear;
 mod matrices;
 mod operational;
@@ -19,6 +20,8 @@ use pyo3::prelude::*;
 mod _gyroflex {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::inverse::PyElasticInverse;
     #[pymodule_export]
     use crate::linear::{PyFrequencyResponse, PyLinearization, PyMode};
     #[pymodule_export]

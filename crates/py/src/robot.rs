@@ -3,6 +3,7 @@
 use crate::arguments::{self, Layout};
 use crate::arrays::{Matrix, Vector, matrix, vector};
 use crate::errors;
+use crate::inverse::Inverses;
 use crate::workspace::{Pool, Workspace};
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex_sim::Robot;
@@ -28,6 +29,7 @@ use std::path::PathBuf;
 pub(crate) struct PyRobot {
     pub(crate) robot: Robot,
     pool: Pool,
+    pub(crate) inverses: Inverses,
     pub(crate) layout: Layout,
 }
 
@@ -59,7 +61,7 @@ impl PyRobot {
         let view = lowered.view();
         let layout = Layout { nq: view.nq(), nv: view.nv(), floating: robot.is_floating() };
         errors::warn(py, &robot.warnings)?;
-        Ok(Self { robot, pool: Pool::default(), layout })
+        Ok(Self { robot, pool: Pool::default(), inverses: Inverses::default(), layout })
     }
 
     /// The robot's name.

@@ -10,7 +10,7 @@ link side of the gear.
 >>> qdd, thetadd = robot.forward_dynamics(q, still, theta, still, tau)
 """
 
-from ._gyroflex import FrequencyResponse, Linearization, Mode, Robot, __version__
+from ._gyroflex import ElasticInverse, FrequencyResponse, Linearization, Mode, Robot, __version__
 from .errors import (
     ArgumentError,
     DivergedError,
@@ -28,6 +28,7 @@ from .simulation import SimulationResult, simulate
 __all__ = [
     "ArgumentError",
     "DivergedError",
+    "ElasticInverse",
     "Error",
     "FileError",
     "FormatError",

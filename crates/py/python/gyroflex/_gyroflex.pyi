@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import DivergedError
 
-__all__ = ["FrequencyResponse", "Linearization", "Mode", "Robot", "run_scenario", "__version__"]
+__all__ = ["ElasticInverse", "FrequencyResponse", "Linearization", "Mode", "Robot", "run_scenario", "__version__"]
 
 __version__: str
 
@@ -137,6 +137,46 @@ class FrequencyResponse:
     @property
     def antiresonances(self) -> _Vector:
         """Frequencies of the dips of the motor's response [Hz]."""
+
+@final
+class ElasticInverse:
+    """What the motors must do for a motion of the links."""
+
+    @property
+    def theta(self) -> _Vector:
+        """Motor positions seen from the link side, shape `(nv,)`."""
+
+    @property
+    def thetad(self) -> _Vector:
+        """Motor velocities seen from the link side, shape `(nv,)`."""
+
+    @property
+    def thetadd(self) -> _Vector:
+        """Motor accelerations seen from the link side, shape `(nv,)`."""
+
+    @property
+    def tau_j(self) -> _Vector:
+        """Torques that the transmissions exert on the joints, shape `(nv,)` [N m or N]."""
+
+    @property
+    def tau(self) -> _Vector:
+        """Motor torques seen from the link side, shape `(nv,)` [N m or N]."""
+
+    @property
+    def tau_j_derivatives(self) -> _Matrix:
+        """Time derivatives of `tau_j` from the first on, shape `(torque_derivatives, nv)`."""
+
+    @property
+    def tau_derivatives(self) -> _Matrix:
+        """Time derivatives of `tau` from the first on, shape `(torque_derivatives, nv)`."""
+
+    @property
+    def deflection(self) -> _Vector:
+        """Deflections of the transmissions after the step, shape `(nv,)`: the `deflection` of the next call."""
+
+    @property
+    def deflection_rate(self) -> _Vector:
+        """Their rates before the step, shape `(nv,)`."""
 
 @final
 class Robot:
@@ -299,6 +339,25 @@ class Robot:
         model: _Model | None = None,
     ) -> dict[str, Any]:
         """The dynamics that a link feels: Jacobian, inertia, consistent inverse, velocity and gravity forces, singular values."""
+
+    def smoothness(
+        self, model: _Model | None = None, torque_derivatives: int = 0, *, damping: float | None = None
+    ) -> dict[str, int]:
+        """How many derivatives of every joint's position `elastic_inverse` needs, by name of the joint."""
+
+    def elastic_inverse(
+        self,
+        q: ArrayLike,
+        derivatives: ArrayLike,
+        *,
+        deflection: ArrayLike | None = None,
+        step: float = 0.0,
+        model: _Model | None = None,
+        tau_ext: ArrayLike | None = None,
+        torque_derivatives: int = 0,
+        damping: float | None = None,
+    ) -> ElasticInverse:
+        """Motions and torques of the motors that make the links move as asked; `derivatives` has shape `(order, nv)`."""
 
     def linearize(
         self,

@@ -5,6 +5,7 @@ mod text;
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
 use crate::error::Error;
+use crate::inverse::SmoothnessTable;
 use crate::modes::{Modes, modes};
 use crate::robot::Robot;
 use gyroflex::model::{BodySpec, DriveSpec, Friction, MountSpec, SpringSpec, TransmissionSpec};
@@ -34,6 +35,9 @@ pub struct Info {
     /// Natural modes of the transmissions at the zero pose, unloaded, in the robot's own model; `None` without elastic joints
     /// in that model, or where the inertia matrix has no inverse.
     pub modes: Option<Modes>,
+    /// How many derivatives of the joints' positions the inverse of the elastic models needs; `None` if no joint is elastic: accelerations
+    /// are enough then.
+    pub smoothness: Option<SmoothnessTable>,
     /// What was ignored or assumed.
     pub warnings: Vec<String>,
 }
@@ -189,6 +193,7 @@ impl Info {
             links: robot.links.iter().map(|l| link(robot, l)).collect(),
             table: robot.table.iter().map(entry).collect(),
             modes: modes_at_zero(robot)?,
+            smoothness: smoothness(robot)?,
             warnings: robot.warnings.iter().map(ToString::to_string).collect(),
         })
     }
@@ -214,6 +219,12 @@ fn modes_at_zero(robot: &Robot) -> Result<Option<Modes>, Error> {
     let theta = vec![0.0; dynamics.nv()];
     // A pose at which the inertia matrix is singular has no modes to show; everything else about the robot still does.
     Ok(modes(&mut dynamics, &Coordinates::of(robot), &q, &theta).ok())
+}
+
+fn smoothness(robot: &Robot) -> Result<Option<SmoothnessTable>, Error> {
+    let mut drives = robot.bodies.iter().filter_map(|b| b.drive.as_ref());
+    let elastic = drives.any(|d| matches!(d.transmission, TransmissionSpec::Elastic { .. }));
+    elastic.then(|| SmoothnessTable::of(robot)).transpose()
 }
 
 fn moving_rotor_mass(body: &BodySpec) -> f64 {

@@ -1,6 +1,7 @@
 //! The same for people.
 
 use super::{DriveInfo, Info, JointInfo};
+use crate::inverse::SmoothnessTable;
 use crate::modes::Mode;
 use std::fmt;
 
@@ -34,6 +35,11 @@ impl fmt::Display for Info {
             writeln!(f, "\nModes of the transmissions at the zero pose, the fastest first")?;
             table(f, &["frequency [Hz]", "moves most"], modes.modes.iter().rev().map(mode))?;
         }
+        writeln!(f, "\nDerivatives of q(t) that the inverse of a model needs")?;
+        match &self.smoothness {
+            Some(needed) => smoothness(f, needed)?,
+            None => writeln!(f, "  accelerations are enough: no joint is elastic")?,
+        }
         writeln!(f, "\nFrames")?;
         let frames = self.links.iter().map(|l| {
             let moved_by = l.moved_by.clone().unwrap_or_else(|| "does not move".to_owned());
@@ -61,6 +67,19 @@ fn joint(j: &JointInfo) -> Vec<String> {
 
 fn mode(m: &Mode) -> Vec<String> {
     vec![digits(m.frequency), format!("{} of {}", if m.on_motor { "motor" } else { "link" }, m.joint)]
+}
+
+fn smoothness(f: &mut fmt::Formatter<'_>, needed: &SmoothnessTable) -> fmt::Result {
+    let rows = needed.joints.iter().map(|j| vec![j.joint.clone(), j.complete.to_string(), j.reduced.to_string()]);
+    table(f, &["joint", "complete", "reduced"], rows)?;
+    let SmoothnessTable { undamped, damped, .. } = needed;
+    writeln!(f, "  complete, at most: {damped} if every transmission were damped, {undamped} if none were")?;
+    match needed.without_slight_couplings {
+        Some(fewer) => {
+            writeln!(f, "  complete, at most: {fewer} without couplings below a thousandth of their natural size")
+        }
+        None => Ok(()),
+    }
 }
 
 fn drive(name: &str, d: &DriveInfo) -> Vec<String> {

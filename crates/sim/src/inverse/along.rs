@@ -2,8 +2,6 @@
 
 use super::InverseModel;
 use crate::coordinates::Coordinates;
-use crate::dynamics::Dynamics;
-use crate::equilibrium::Equilibrium;
 use crate::error::Error;
 use crate::load::yaml::Keys;
 use crate::reference::References;
@@ -119,19 +117,7 @@ impl ReferenceInverse {
     /// Deflections of equilibrium at time `t`.
     fn rest(&mut self, references: &References, t: f64) -> Result<(), Error> {
         self.look(references, t);
-        let nv = self.inverse.deflection().len();
-        let mut dynamics = Dynamics::new(self.inverse.model().clone());
-        let (mut theta, mut tau) = (vec![0.0; nv], vec![0.0; nv]);
-        Equilibrium::new(nv).solve(&mut dynamics, &self.q, External::none(), &mut theta, &mut tau)?;
-        let mut deflection = vec![0.0; nv];
-        for body in dynamics.model().bodies() {
-            let (k, Some(drive)) = (body.v_index(), &body.drive) else { continue };
-            let Some(elastic) = &drive.elastic else { continue };
-            let error = elastic.error.map_or(0.0, |e| e.value_and_slope(theta[k], drive.rotor.gear_ratio).0);
-            deflection[k] = theta[k] - self.q[body.q_index()] - error;
-        }
-        self.inverse.set_deflection(&deflection);
-        Ok(())
+        self.inverse.rest(&self.q, External::none())
     }
 
     /// Motors and torques at time `t` [s]; `step` is the time to the next instant, for which `advance` of the inverse moves its

@@ -1,4 +1,34 @@
 //! The inverse of an elastic robot: motors and torques from the motion of the links, with storage of its own.
+//!
+//! ```
+//! use gyroflex::control::reference::{PointToPoint, Reference};
+//! use gyroflex::dynamics::External;
+//! use gyroflex_sim::inverse::InverseModel;
+//! use gyroflex_sim::load::{LoadOptions, load};
+//!
+//! # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/lwr/robot.yaml");
+//! # /*
+//! let path = "robots/lwr/robot.yaml";
+//! # */
+//! let robot = load(path.as_ref(), &LoadOptions::default())?;
+//! let mut inverse = InverseModel::new(&robot, robot.fidelity, 0)?;
+//! let (nv, order) = (robot.joints.len(), inverse.smoothness().order());
+//!
+//! // All joints from 0 to 0.5 rad in a second, at rest in as many derivatives as are needed.
+//! let motion = PointToPoint::new(0.0, 0.5, 0.0, 1.0, order).ok_or("numbers out of range")?;
+//! let mut row = vec![0.0; 1 + order];
+//! inverse.rest(&vec![0.0; nv], External::none())?;
+//! for tick in 0..1000 {
+//!     motion.derivatives(1e-3 * f64::from(tick), &mut row);
+//!     let derivatives: Vec<f64> = row[1..].iter().flat_map(|r| vec![*r; nv]).collect();
+//!     inverse.at(&vec![row[0]; nv], &derivatives, External::none(), 1e-3)?;
+//!     inverse.advance();
+//!     let (theta, tau) = (inverse.theta(0), inverse.tau(0));
+//!     # assert!((theta[0] - row[0]).abs() < 0.1 && tau[0].is_finite());
+//! }
+//! # assert_eq!(order, 6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod along;
 mod run;
@@ -6,8 +36,10 @@ mod smoothness;
 
 pub use along::ReferenceInverse;
 pub use run::{InverseRun, InverseSummary, JointInverse};
-pub use smoothness::{JointSmoothness, SmoothnessTable};
+pub use smoothness::{JointSmoothness, SmoothnessTable, joint_orders};
 
+use crate::dynamics::Dynamics;
+use crate::equilibrium::Equilibrium;
 use crate::error::{Error, ErrorKind};
 use crate::robot::{OwnedModel, Robot};
 use gyroflex::dynamics::{
@@ -78,6 +110,24 @@ impl InverseModel {
     /// Sets them.
     pub fn set_deflection(&mut self, deflection: &[f64]) {
         self.deflection.copy_from_slice(deflection);
+    }
+
+    /// Sets them to those at which the transmissions hold the links at rest at `q` (`nq` entries) against gravity and `ext`.
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn rest(&mut self, q: &[f64], ext: External<f64>) -> Result<(), Error> {
+        let nv = self.deflection.len();
+        let (mut theta, mut tau) = (vec![0.0; nv], vec![0.0; nv]);
+        let mut dynamics = Dynamics::new(self.model.clone());
+        Equilibrium::new(nv).solve(&mut dynamics, q, ext, &mut theta, &mut tau)?;
+        for body in dynamics.model().bodies() {
+            let (k, Some(drive)) = (body.v_index(), &body.drive) else { continue };
+            let Some(elastic) = &drive.elastic else { continue };
+            let error = elastic.error.map_or(0.0, |e| e.value_and_slope(theta[k], drive.rotor.gear_ratio).0);
+            self.deflection[k] = theta[k] - q[body.q_index()] - error;
+        }
+        Ok(())
     }
 
     /// Finds motors and torques for positions `q` (`nq` entries) and their derivatives, one after the other (`nv` entries each); `step` is the
@@ -220,6 +270,7 @@ fn too_many(robot: &Robot, needed: usize) -> Error {
         problem: format!(
             "its inverse carries series of {needed} coefficients, more than the {MAX_COEFFICIENTS} there is code for"
         ),
-        remedy: "invert the reduced model, or give the transmissions damping".to_owned(),
+        remedy: "invert the reduced model, give the transmissions damping, or ask for fewer derivatives of the torques"
+            .to_owned(),
     }
 }

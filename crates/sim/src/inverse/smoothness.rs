@@ -3,7 +3,7 @@
 use super::{orders, with_least_damping};
 use crate::error::Error;
 use crate::robot::Robot;
-use gyroflex::dynamics::VANISHING;
+use gyroflex::dynamics::{JointOrders, VANISHING};
 use gyroflex::model::Fidelity;
 use serde::Serialize;
 
@@ -36,6 +36,15 @@ pub struct SmoothnessTable {
     pub damped: u8,
 }
 
+/// What the inverse of a robot in one of its models asks of every joint, with `torque_derivatives` time derivatives of the torques; also where that
+/// is more than an inverse can carry. One entry per joint, a floating root first.
+///
+/// # Errors
+/// Names the joint that is not physical in this model.
+pub fn joint_orders(robot: &Robot, fidelity: Fidelity, torque_derivatives: usize) -> Result<Vec<JointOrders>, Error> {
+    orders(&robot.model(fidelity)?, torque_derivatives, VANISHING)
+}
+
 impl SmoothnessTable {
     /// Finds it.
     ///
@@ -44,7 +53,7 @@ impl SmoothnessTable {
     pub fn of(robot: &Robot) -> Result<Self, Error> {
         let (complete, reduced) = (robot.model(Fidelity::Complete)?, robot.model(Fidelity::Reduced)?);
         let (exact, slight) = (orders(&complete, 0, VANISHING)?, orders(&complete, 0, SLIGHT)?);
-        let highest = |of: &[gyroflex::dynamics::JointOrders]| of.iter().map(|o| o.position).max().unwrap_or(0);
+        let highest = |of: &[JointOrders]| of.iter().map(|o| o.position).max().unwrap_or(0);
         let with = |damping: f64| -> Result<u8, Error> {
             let mut other = with_least_damping(robot, damping);
             if damping == 0.0 {

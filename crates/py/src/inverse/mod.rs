@@ -1,0 +1,168 @@
+//! The inverse of an elastic robot: motors and torques from the motion of the links.
+
+mod kept;
+mod result;
+
+pub(crate) use kept::Inverses;
+pub(crate) use result::PyElasticInverse;
+
+use crate::arrays::read_rows;
+use crate::robot::PyRobot;
+use crate::{arguments, errors};
+use gyroflex::dynamics::{External, JointOrders};
+use gyroflex_sim::inverse::{joint_orders, with_least_damping};
+use kept::Wanted;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+#[pymethods]
+impl PyRobot {
+    /// How many derivatives of every joint's position `elastic_inverse` needs.
+    ///
+    /// Parameters
+    /// ----------
+    /// model
+    ///     Which physics of the motors.
+    /// torque_derivatives
+    ///     How many time derivatives of the torques are asked for besides the torques.
+    /// damping
+    ///     Damping that the elastic transmissions have at least [N m s/rad or N s/m]: damped ones need fewer.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     By name of the joint. A floating root is called `root`; its first derivative is its twist.
+    #[pyo3(signature = (model=None, torque_derivatives=0, *, damping=None))]
+    fn smoothness<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<&str>,
+        torque_derivatives: usize,
+        damping: Option<f64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let Wanted { fidelity, damping, .. } = self.wanted(model, torque_derivatives, damping)?;
+        let robot = with_least_damping(&self.robot, damping);
+        let orders = joint_orders(&robot, fidelity, torque_derivatives).map_err(errors::raise)?;
+        let answer = PyDict::new(py);
+        for (joint, order) in robot.joints.iter().zip(orders) {
+            answer.set_item(&joint.name, order.position)?;
+        }
+        Ok(answer)
+    }
+
+    /// Motions and torques of the motors that make the links move as asked, elastic transmissions included.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     Joint positions, shape `(nq,)` [rad or m].
+    /// derivatives
+    ///     Their time derivatives from the velocities on, shape `(order, nv)` [rad or m, per s, per s², …]; `smoothness` says how many
+    ///     are needed. Of a floating root the twist in its own frame, and the derivatives of those six numbers.
+    /// deflection
+    ///     Present deflections of damped transmissions, which are a state of the inverse, shape `(nv,)` [rad or m]; at first those of
+    ///     rest at `q`, which is what is taken if it is left out; later the `deflection` of the call before.
+    /// step
+    ///     Time to the next call [s], after which the `deflection` of the result is.
+    /// model
+    ///     Which physics of the motors.
+    /// tau_ext
+    ///     Generalised forces on the link side of the joints that help, shape `(nv,)` [N m or N], held constant; or with their
+    ///     time derivatives, shape `(rows, nv)`.
+    /// torque_derivatives
+    ///     How many time derivatives of the torques are asked for besides the torques.
+    /// damping
+    ///     Damping that the elastic transmissions have at least in the inverse [N m s/rad or N s/m]; fewer derivatives are needed
+    ///     then, and the torques are those of a robot so damped.
+    ///
+    /// Returns
+    /// -------
+    /// ElasticInverse
+    ///     Motor motions, torques and deflections.
+    #[pyo3(signature = (q, derivatives, *, deflection=None, step=0.0, model=None, tau_ext=None, torque_derivatives=0, damping=None))]
+    #[expect(clippy::too_many_arguments, reason = "most of them may be left out")]
+    fn elastic_inverse<'py>(
+        &self,
+        q: &Bound<'py, PyAny>,
+        derivatives: &Bound<'py, PyAny>,
+        deflection: Option<&Bound<'py, PyAny>>,
+        step: f64,
+        model: Option<&str>,
+        tau_ext: Option<&Bound<'py, PyAny>>,
+        torque_derivatives: usize,
+        damping: Option<f64>,
+    ) -> PyResult<PyElasticInverse> {
+        let wanted = self.wanted(model, torque_derivatives, damping)?;
+        at_least_zero("step", step)?;
+        let nv = self.layout.nv;
+        let mut positions = vec![0.0; self.layout.nq];
+        self.layout.positions(q, &mut positions)?;
+        let derivatives = read_rows("derivatives", derivatives, nv, DERIVATIVES)?;
+        let loads = self.loads(tau_ext)?;
+        let ext = External { tau: &loads, wrenches: &[] };
+        let mut now = vec![0.0; nv];
+        if let Some(deflection) = deflection {
+            self.layout.forces("deflection", deflection, &mut now)?;
+        }
+        self.inverses.with(&self.robot, wanted, |inverse| {
+            self.check(inverse.smoothness().joints, derivatives.len() / nv.max(1))?;
+            inverse.set_deflection(&now);
+            if deflection.is_none() && inverse.smoothness().joints.iter().any(|j| j.damped) {
+                let at_rest = External { tau: loads.get(..nv).unwrap_or(&[]), wrenches: &[] };
+                inverse.rest(&positions, at_rest).map_err(errors::raise)?;
+            }
+            inverse.at(&positions, &derivatives, ext, step).map_err(errors::raise)?;
+            inverse.advance();
+            Ok(PyElasticInverse::of(inverse, torque_derivatives))
+        })
+    }
+}
+
+const DERIVATIVES: &str = "give a row for each derivative, the velocities first, with one entry per velocity coordinate in the order of \
+                           `joint_names`; a floating root leads with six";
+
+impl PyRobot {
+    fn wanted(&self, model: Option<&str>, torque_derivatives: usize, damping: Option<f64>) -> PyResult<Wanted> {
+        let fidelity = model.map_or(Ok(self.robot.fidelity), arguments::fidelity)?;
+        let damping = damping.unwrap_or(0.0);
+        at_least_zero("damping", damping)?;
+        Ok(Wanted { fidelity, torque_derivatives, damping })
+    }
+
+    /// Loads with their derivatives, one row after the other; empty for none.
+    fn loads(&self, value: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
+        let Some(value) = value else { return Ok(Vec::new()) };
+        if value.getattr("ndim").and_then(|n| n.extract::<usize>()).is_ok_and(|axes| axes == 2) {
+            return read_rows("tau_ext", value, self.layout.nv, DERIVATIVES);
+        }
+        let mut load = vec![0.0; self.layout.nv];
+        self.layout.forces("tau_ext", value, &mut load)?;
+        Ok(load)
+    }
+
+    /// Whether a motion has the derivatives that are needed, joint by joint.
+    fn check(&self, orders: &[JointOrders], given: usize) -> PyResult<()> {
+        let few = self.robot.joints.iter().zip(orders).filter(|(_, order)| usize::from(order.position) > given);
+        let few: Vec<String> =
+            few.map(|(joint, order)| format!("`{}` needs {} and has {given}", joint.name, order.position)).collect();
+        if few.is_empty() {
+            return Ok(());
+        }
+        let most = orders.iter().map(|order| order.position).max().unwrap_or(0);
+        Err(errors::shape(
+            "derivatives",
+            format!("the torques depend on more derivatives than are given: {}", few.join(", ")),
+            format!(
+                "give an array of shape ({most}, {}), or invert a model that needs fewer: `reduced`, or one with added `damping`",
+                self.layout.nv
+            ),
+        ))
+    }
+}
+
+fn at_least_zero(name: &str, value: f64) -> PyResult<()> {
+    if value.is_finite() && value >= 0.0 {
+        return Ok(());
+    }
+    Err(errors::argument(name, format!("it is {value}"), "give a finite number that is not negative"))
+}
