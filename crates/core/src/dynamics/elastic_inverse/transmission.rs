@@ -213,8 +213,8 @@ pub(super) fn motor<T: Scalar, const N: usize>(
     let inverse = T::one() / share.value();
     for k in 0..N {
         let mut rest = speed.0[k];
-        for i in 1..=k {
-            rest = (-share.0[i]).mul_add(rate.0[k - i], rest);
+        for (share, rate) in share.0.iter().skip(1).zip(rate.0.iter().take(k).rev()) {
+            rest = (-*share).mul_add(*rate, rest);
         }
         rate.0[k] = rest * inverse;
         let each = cycles * T::from_f64(reciprocal(k + 1));
