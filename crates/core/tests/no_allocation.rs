@@ -2,8 +2,10 @@
 
 mod common;
 use common::{Lowered, drive, elastic, link};
+use gyroflex::Jet;
 use gyroflex::control::reference::*;
 use gyroflex::control::*;
+use gyroflex::control::{FeedbackLinearization, LinearizationScratch, Motors, Pd, TwoDof, TwoDofScratch};
 use gyroflex::dynamics::*;
 use gyroflex::integrate::*;
 use gyroflex::model::*;
@@ -104,6 +106,75 @@ fn no_algorithm_allocates() {
     });
     assert_eq!(count, 0);
     assert!(q.iter().chain(&qd).all(|x: &f64| x.is_finite()));
+}
+
+#[test]
+fn neither_the_elastic_inverse_nor_its_controllers_allocate() {
+    const NV: usize = 3;
+    let mut bodies = [
+        link(None, [0.0, 0.0, 1.0], [0.0; 3], [0.1, 0.0, 0.0]),
+        link(Some(0), [0.0, 1.0, 0.0], [0.3, 0.0, 0.0], [0.1, 0.0, 0.0]),
+        link(Some(1), [1.0, 0.0, 0.0], [0.3, 0.0, 0.0], [0.1, 0.05, 0.0]),
+    ];
+    let error = TransmissionError { amplitude: 1e-4, cycles_per_rotor_turn: 2.0, phase: 0.3 };
+    let curved = |spring| TransmissionSpec::Elastic { spring, damping: 2.0, error };
+    let springs = [
+        elastic(900.0, 2.0),
+        curved(SpringSpec::Polynomial { stiffness: 900.0, cubic: 1e5 }),
+        curved(SpringSpec::Table { first: 0, len: 3 }),
+    ];
+    for (i, (body, spring)) in bodies.iter_mut().zip(springs).enumerate() {
+        body.friction = Friction::coulomb(0.1, 0.2, 0.5);
+        body.drive = Some(drive(i.checked_sub(1), [0.6, 0.0, 0.8], 80.0, spring));
+    }
+    let table = [[0.0, 0.0], [0.01, 10.0], [0.02, 25.0]];
+    let lowered = |fidelity| Lowered::with_tables(&bodies, &table, [0.0, 0.0, -9.81], fidelity);
+    let (complete, reduced) = (lowered(Fidelity::Complete), lowered(Fidelity::Reduced));
+
+    let (mut orders, mut reduced_orders) = ([JointOrders::default(); NV], [JointOrders::default(); NV]);
+    let mut derivative = [DerivativeScratch::new(); NV];
+    let mut numbers = vec![0.0; smoothness_len(&complete.model())];
+    let mut contains = [Contains::default(); NV * NV];
+    let mut series = vec![ElasticInverseScratch::new(); (NV + 1) * MAX_COEFFICIENTS];
+    let (q, derivatives, gains) = ([0.1, -0.2, 0.3], [0.4; 20 * NV], [2.0; NV]);
+    let (mut deflection, mut theta, mut tau_j, mut tau, mut rates) =
+        ([1e-3; NV], [0.0; 3 * NV], [0.0; NV], [0.0; NV], [0.0; 2 * NV]);
+    let (mut jets, mut aba_jets) = ([Jet([0.0; 2]); 8 * NV], [AbaScratch::new(); NV]);
+    let mut work = [0.0; 11 * NV];
+
+    let count = allocations(|| {
+        for (robot, orders) in [(&complete, &mut orders), (&reduced, &mut reduced_orders)] {
+            let scratch = SmoothnessScratch { bodies: &mut derivative, numbers: &mut numbers, contains: &mut contains };
+            required_smoothness(&robot.model(), 0, VANISHING, scratch, orders).unwrap();
+        }
+        let smoothness = Smoothness { joints: &orders, torque_derivatives: 0 };
+        let length = elastic_inverse_len(&complete.model(), &smoothness).unwrap();
+        let mut law = TwoDof {
+            model: complete.model(),
+            smoothness,
+            feedback: Pd { kp: &gains, kd: &gains },
+            deflection: &mut deflection,
+        };
+        let scratch =
+            TwoDofScratch { series: &mut series[..length], theta: &mut theta, tau_j: &mut tau_j, rates: &mut rates };
+        let motion = JointMotion { q: &q, derivatives: &derivatives };
+        let motors = Motors { theta: &q, thetad: &gains };
+        law.tick::<MAX_COEFFICIENTS>(motion, motors, 1e-3, scratch, &mut tau).unwrap();
+
+        let smoothness = Smoothness { joints: &reduced_orders, torque_derivatives: 0 };
+        let length = elastic_inverse_len(&reduced.model(), &smoothness).unwrap();
+        let law = FeedbackLinearization { model: reduced.model(), smoothness, bandwidth: &gains };
+        let scratch = LinearizationScratch {
+            bodies: &mut aba_jets,
+            series: &mut series[..length],
+            jets: &mut jets,
+            numbers: &mut work,
+        };
+        let state = State { q: &q, qd: &gains, theta: &q, thetad: &gains };
+        law.torque(&derivatives[..4 * NV], state, scratch, &mut tau).unwrap();
+    });
+    assert_eq!(count, 0);
+    assert!(tau.iter().chain(&theta).all(|x: &f64| x.is_finite()));
 }
 
 #[test]
