@@ -52,11 +52,11 @@ fn text_and_json_name_every_joint_and_link() {
 /// The shoulder of the arm again and again, about these axes, each rotor in its joint.
 fn chain(axes: &[Vec3<f64>], damping: f64) -> Robot {
     let mut robot = arm(false);
-    let (joint, body) = (robot.joints[0].clone(), robot.bodies[0].clone());
+    let (joint, body) = (robot.joints[0].clone(), robot.bodies[0]);
     (robot.joints, robot.bodies) = (Vec::new(), Vec::new());
     robot.links.truncate(1);
     for (i, axis) in axes.iter().enumerate() {
-        let (mut joint, mut body) = (joint.clone(), body.clone());
+        let (mut joint, mut body) = (joint.clone(), body);
         joint.name = format!("joint{i}");
         body.parent = i.checked_sub(1);
         body.axis = *axis;
