@@ -9,6 +9,7 @@ use gyroflex_sim::error::{Error, ErrorKind};
 use gyroflex_sim::inverse::{InverseRun, InverseSummary};
 use gyroflex_sim::load::{self, Disk, LoadOptions};
 use gyroflex_sim::record::{CsvRecorder, McapRecorder, TeeRecorder};
+use gyroflex_sim::zeros::{InverseStability, Verdict};
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -85,9 +86,27 @@ fn text(s: &InverseSummary, log: &Path, csv: Option<&Path>) -> String {
     out.push_str(
         "  (derivatives needed and given; largest torques in N m, deflections in rad, speeds in rad/s, link side)\n",
     );
+    let _ = writeln!(out, "internal dynamics: {}", internal(&s.stability));
     let _ = write!(out, "log: {} ({} samples)", log.display(), s.samples);
     if let Some(csv) = csv {
         let _ = write!(out, "\ncsv: {}", csv.display());
     }
     out
+}
+
+/// What becomes of what moves inside the inverse.
+fn internal(stability: &InverseStability) -> String {
+    let verdict = match stability.verdict {
+        Verdict::Stable => "stable",
+        Verdict::Undamped => "undamped",
+        Verdict::Unstable => "unstable",
+    };
+    let slowest = stability.slowest.as_ref().map_or_else(
+        || "none".to_owned(),
+        |at| format!("{verdict}, the slowest of joint `{}` fades by {:.4e} 1/s", at.zero.joint, -at.zero.value[0]),
+    );
+    match stability.verdict {
+        Verdict::Stable => slowest,
+        _ => format!("{slowest}; {} (`--damping` adds damping to the inverse)", stability.reason),
+    }
 }

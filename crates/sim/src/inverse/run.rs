@@ -10,11 +10,15 @@ use crate::reference::{Point, References};
 use crate::robot::Robot;
 use crate::scenario::ScenarioFile;
 use crate::simulate::{Sampler, StateVec};
+use crate::zeros::{InverseOutput, InverseStability};
 use gyroflex::model::Fidelity;
 use gyroflex::spatial::Vec3;
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::time::Instant;
+
+/// Poses at which the internal dynamics are looked at.
+const POSES: usize = 8;
 
 /// The longest step of the deflections of damped transmissions [s].
 const LONGEST_STEP: f64 = 1e-4;
@@ -30,6 +34,7 @@ pub struct InverseRun {
     /// The inverted model, for what is logged besides.
     dynamics: Dynamics,
     sampler: Sampler,
+    stability: InverseStability,
     /// What the user should know.
     pub warnings: Vec<Warning>,
 }
@@ -51,6 +56,8 @@ pub struct InverseSummary {
     pub time_per_call: f64,
     /// One entry per joint.
     pub joints: Vec<JointInverse>,
+    /// What becomes of its internal dynamics, the deflections of damped transmissions, over poses within the joints' limits.
+    pub stability: InverseStability,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -102,7 +109,8 @@ impl InverseRun {
         let along = ReferenceInverse::new(inverse, &joints, &references, &file.keys)?;
         let dynamics = Dynamics::new(robot.model(robot.fidelity)?);
         let sampler = Sampler::new(&robot, &joints, &dynamics)?;
-        Ok(Self { robot, file: file.clone(), joints, references, along, dynamics, sampler, warnings })
+        let stability = InverseStability::of(&robot, InverseOutput::Link, POSES)?;
+        Ok(Self { robot, file: file.clone(), joints, references, along, dynamics, sampler, stability, warnings })
     }
 
     /// What a recorder must know before the first sample.
@@ -214,6 +222,7 @@ impl InverseRun {
             samples: 0,
             time_per_call: 0.0,
             joints: self.joints.joints.iter().enumerate().map(joint).collect(),
+            stability: self.stability.clone(),
             warnings: self.warnings.iter().map(Warning::to_string).collect(),
         }
     }
