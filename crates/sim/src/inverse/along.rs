@@ -127,6 +127,11 @@ impl ReferenceInverse {
     /// As [`InverseModel::at`].
     pub fn at(&mut self, references: &References, t: f64, step: f64) -> Result<(), Error> {
         self.look(references, t);
+        self.invert(step)
+    }
+
+    /// The same for the motion of the last look.
+    pub(super) fn invert(&mut self, step: f64) -> Result<(), Error> {
         self.inverse.at(&self.q, &self.derivatives, External::none(), step)
     }
 
@@ -136,7 +141,7 @@ impl ReferenceInverse {
     }
 
     /// The motion of the links at time `t`.
-    fn look(&mut self, references: &References, t: f64) {
+    pub(super) fn look(&mut self, references: &References, t: f64) {
         let nv = self.inverse.deflection().len();
         for (i, joint) in self.joints.joints.iter().enumerate() {
             references.derivatives(i, t, &mut self.of_joint);

