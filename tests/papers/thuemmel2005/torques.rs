@@ -4,6 +4,7 @@ use crate::arm::{N, robot, scenario};
 use gyroflex_sim::inverse::{InverseRun, SmoothnessTable};
 use gyroflex_sim::record::MemoryRecorder;
 use gyroflex_sim::scenario::JointReference;
+use gyroflex_sim::zeros::InverseOutput;
 use gyroflex_sim::{Error, Fidelity};
 use std::ops::{ControlFlow, Range};
 
@@ -67,7 +68,7 @@ impl Torques {
         }
         let mut out = Self { time: Vec::new(), of: Vec::new() };
         for model in MODELS {
-            let mut run = InverseRun::new(&robot, &file, Some(model), 0.0)?;
+            let mut run = InverseRun::new(&robot, &file, Some(model), 0.0, InverseOutput::Link)?;
             let mut record = MemoryRecorder::new(run.run_info());
             run.run(&mut record, &mut |_| ControlFlow::Continue(()))?;
             let samples = record.samples();

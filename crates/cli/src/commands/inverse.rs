@@ -9,7 +9,7 @@ use gyroflex_sim::error::{Error, ErrorKind};
 use gyroflex_sim::inverse::{InverseRun, InverseSummary};
 use gyroflex_sim::load::{self, Disk, LoadOptions};
 use gyroflex_sim::record::{CsvRecorder, McapRecorder, TeeRecorder};
-use gyroflex_sim::zeros::{InverseStability, Verdict};
+use gyroflex_sim::zeros::{AtPose, InverseOutput, Verdict};
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -22,7 +22,8 @@ pub fn run(args: &Inverse, quiet: bool) -> Result<(), Failure> {
     }
     let robot = load::load(&file.robot_path(), &LoadOptions::default())?;
     warn(&robot.warnings, quiet);
-    let mut inverse = InverseRun::new(&robot, &file, args.model.map(Into::into), args.damping)?;
+    let model = args.model.map(Into::into);
+    let mut inverse = InverseRun::new(&robot, &file, model, args.damping, args.prescribe.into())?;
     warn(&inverse.warnings, quiet);
 
     let log = logs::path(args.output.as_deref(), &args.scenario, "inverse.mcap");
@@ -86,7 +87,7 @@ fn text(s: &InverseSummary, log: &Path, csv: Option<&Path>) -> String {
     out.push_str(
         "  (derivatives needed and given; largest torques in N m, deflections in rad, speeds in rad/s, link side)\n",
     );
-    let _ = writeln!(out, "internal dynamics: {}", internal(&s.stability));
+    let _ = writeln!(out, "internal dynamics: {}", internal(s));
     let _ = write!(out, "log: {} ({} samples)", log.display(), s.samples);
     if let Some(csv) = csv {
         let _ = write!(out, "\ncsv: {}", csv.display());
@@ -95,18 +96,37 @@ fn text(s: &InverseSummary, log: &Path, csv: Option<&Path>) -> String {
 }
 
 /// What becomes of what moves inside the inverse.
-fn internal(stability: &InverseStability) -> String {
+fn internal(s: &InverseSummary) -> String {
+    let stability = &s.stability;
     let verdict = match stability.verdict {
         Verdict::Stable => "stable",
         Verdict::Undamped => "undamped",
         Verdict::Unstable => "unstable",
     };
-    let slowest = stability.slowest.as_ref().map_or_else(
-        || "none".to_owned(),
-        |at| format!("{verdict}, the slowest of joint `{}` fades by {:.4e} 1/s", at.zero.joint, -at.zero.value[0]),
-    );
-    match stability.verdict {
-        Verdict::Stable => slowest,
-        _ => format!("{slowest}; {} (`--damping` adds damping to the inverse)", stability.reason),
+    let needed = s.joints.iter().map(|j| j.derivatives_needed).max().unwrap_or(0);
+    let Some(AtPose { zero, q }) = &stability.slowest else {
+        return match (stability.output, stability.verdict) {
+            (InverseOutput::Link, Verdict::Undamped) => format!(
+                "none, {needed} derivatives of the reference in their place: no transmission is damped (`--damping` and `--prescribe motor` \
+                 need fewer)"
+            ),
+            _ => "none".to_owned(),
+        };
+    };
+    let rate = zero.value[0];
+    let slowest = if rate > 0.0 { format!("grows by {rate:.4e} 1/s") } else { format!("fades by {:.4e} 1/s", -rate) };
+    let pose: Vec<String> = q.iter().map(|q| format!("{q:.3}")).collect();
+    let slowest = format!("{verdict}, the slowest, of joint `{}`, {slowest} at q = [{}]", zero.joint, pose.join(", "));
+    match (stability.output, stability.verdict) {
+        (_, Verdict::Stable) => slowest,
+        (InverseOutput::Link, _) => {
+            format!("{slowest}; {} (`--damping` and `--prescribe motor` need fewer)", stability.reason)
+        }
+        (InverseOutput::Motor, Verdict::Undamped) => {
+            format!("{verdict}, {} (`--damping` adds damping to the inverse)", stability.reason)
+        }
+        (InverseOutput::Motor, Verdict::Unstable) => {
+            format!("{slowest} (`--prescribe link` leads the links themselves)")
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::coordinates::Coordinates;
 use crate::error::Error;
-use crate::inverse::{InverseModel, ReferenceInverse, with_least_damping};
+use crate::inverse::{OutputInverse, with_least_damping};
 use crate::load::yaml::Keys;
 use crate::reference::References;
 use crate::robot::Robot;
@@ -12,7 +12,7 @@ use gyroflex::control::Motors;
 /// Where the motors should be, and the torques that move them there.
 #[derive(Clone, Debug)]
 pub(super) struct Feedforward {
-    along: ReferenceInverse,
+    along: OutputInverse,
     /// Time between ticks [s].
     step: f64,
 }
@@ -30,8 +30,8 @@ impl Feedforward {
     ) -> Result<Self, Error> {
         let known = with_least_damping(robot, of.damping);
         let fidelity = of.model.map_or(robot.fidelity, Into::into);
-        let inverse = InverseModel::new(&known, fidelity, 0)?;
-        Ok(Self { along: ReferenceInverse::new(inverse, joints, references, keys)?, step: 1.0 / rate })
+        let along = OutputInverse::new(&known, fidelity, of.output, (joints, references), keys)?;
+        Ok(Self { along, step: 1.0 / rate })
     }
 
     /// Goes to time 0.
@@ -39,31 +39,29 @@ impl Feedforward {
         self.along.start(references)
     }
 
-    /// Finds the motion and the torques of time `t` [s], and moves the deflections on to the next tick.
+    /// Finds the motion and the torques of time `t` [s], and moves the internal dynamics on to the next tick.
     pub(super) fn tick(&mut self, references: &References, t: f64) -> Result<(), Error> {
         self.along.at(references, t, self.step)?;
-        self.along.advance();
-        Ok(())
+        self.along.advance(references, t, self.step)
     }
 
     /// What it found: the motors.
     pub(super) fn motors(&self) -> Motors<'_, f64> {
-        let inverse = self.along.inverse();
-        Motors { theta: inverse.theta(0), thetad: inverse.theta(1) }
+        Motors { theta: self.along.theta(), thetad: self.along.thetad() }
     }
 
     /// What it found: the motor torques.
     pub(super) fn tau(&self) -> &[f64] {
-        self.along.inverse().tau(0)
+        self.along.tau()
     }
 
-    /// The positions of the links that it was asked for.
+    /// The positions of the links: what it was asked for, or how they swing behind the motors.
     pub(super) fn q(&self) -> &[f64] {
         self.along.q()
     }
 
     /// Their velocities.
     pub(super) fn qd(&self) -> &[f64] {
-        self.along.derivative(1)
+        self.along.qd()
     }
 }

@@ -37,29 +37,14 @@ impl ReferenceInverse {
         references: &References,
         keys: &Keys,
     ) -> Result<Self, Error> {
-        if joints.floating {
-            let problem = "a reference moves joints only, but the robot's root floats";
-            return Err(fault(keys, "reference", problem, "fix the root"));
-        }
-        let mut rough = Vec::new();
-        let orders = inverse.smoothness().joints;
-        for (i, joint) in joints.joints.iter().enumerate() {
-            let needed = usize::from(orders[joint.body].position);
-            if let Some(given) = references.smoothness(i).filter(|given| *given < needed) {
-                rough.push(format!("`{}` needs {needed} and has {given}", joint.name));
-            }
-        }
-        if !rough.is_empty() {
-            let problem =
-                format!("the torques depend on more derivatives than the references have: {}", rough.join(", "));
-            let most = inverse.smoothness().order();
-            let remedy = format!(
-                "use `filtered_step` with `order: {most}`, `polynomial` with `order: {}` or `sines`; or invert a model that needs \
-                 fewer: `reduced`, or one with added `damping`",
-                most - 1
-            );
-            return Err(fault(keys, "reference", problem, remedy));
-        }
+        refuse_floating_root(joints, keys)?;
+        let (orders, most) = (inverse.smoothness().joints, inverse.smoothness().order());
+        let remedy = format!(
+            "use `filtered_step` with `order: {most}`, `polynomial` with `order: {}` or `sines`; or invert a model that needs fewer: \
+             `reduced`, or one with added `damping`; or prescribe the motors' motion, for which 2 are enough",
+            most.saturating_sub(1)
+        );
+        check_smoothness(joints, references, keys, |body| orders[body].position, &remedy)?;
         let nv = inverse.deflection().len();
         let order = inverse.smoothness().order();
         Ok(Self {
@@ -151,4 +136,37 @@ impl ReferenceInverse {
             }
         }
     }
+}
+
+/// # Errors
+/// A floating root.
+pub(super) fn refuse_floating_root(joints: &Coordinates, keys: &Keys) -> Result<(), Error> {
+    if joints.floating {
+        let problem = "a reference moves joints only, but the robot's root floats";
+        return Err(fault(keys, "reference", problem, "fix the root"));
+    }
+    Ok(())
+}
+
+/// # Errors
+/// References with fewer derivatives than are `needed` of the joint of a body, joint by joint.
+pub(super) fn check_smoothness(
+    joints: &Coordinates,
+    references: &References,
+    keys: &Keys,
+    needed: impl Fn(usize) -> u8,
+    remedy: &str,
+) -> Result<(), Error> {
+    let mut rough = Vec::new();
+    for (i, joint) in joints.joints.iter().enumerate() {
+        let needed = needed(joint.body);
+        if let Some(given) = references.smoothness(i).filter(|given| *given < usize::from(needed)) {
+            rough.push(format!("`{}` needs {needed} and has {given}", joint.name));
+        }
+    }
+    if rough.is_empty() {
+        return Ok(());
+    }
+    let problem = format!("the torques depend on more derivatives than the references have: {}", rough.join(", "));
+    Err(fault(keys, "reference", problem, remedy))
 }

@@ -31,10 +31,14 @@
 //! ```
 
 mod along;
+mod motor_output;
+mod output;
 mod run;
 mod smoothness;
 
 pub use along::ReferenceInverse;
+pub use motor_output::MotorOutput;
+pub use output::OutputInverse;
 pub use run::{InverseRun, InverseSummary, JointInverse};
 pub use smoothness::{JointSmoothness, SmoothnessTable, joint_orders};
 

@@ -1,6 +1,6 @@
 //! `gyroflex inverse`: motors and torques along the reference of a scenario.
 
-use super::{InverseModel, ReferenceInverse, with_least_damping};
+use super::{OutputInverse, with_least_damping};
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
 use crate::error::{Error, Warning};
@@ -10,7 +10,7 @@ use crate::reference::{Point, References};
 use crate::robot::Robot;
 use crate::scenario::ScenarioFile;
 use crate::simulate::{Sampler, StateVec};
-use crate::zeros::{InverseOutput, InverseStability};
+use crate::zeros::{InverseOutput, InverseStability, Verdict};
 use gyroflex::model::Fidelity;
 use gyroflex::spatial::Vec3;
 use serde::Serialize;
@@ -30,7 +30,7 @@ pub struct InverseRun {
     file: ScenarioFile,
     joints: Coordinates,
     references: References,
-    along: ReferenceInverse,
+    along: OutputInverse,
     /// The inverted model, for what is logged besides.
     dynamics: Dynamics,
     sampler: Sampler,
@@ -52,11 +52,12 @@ pub struct InverseSummary {
     pub interrupted: bool,
     /// Samples recorded.
     pub samples: u64,
-    /// Mean time of one inverse [µs].
+    /// Mean time of one inverse, of the motors' motion with its references and the step of the links [µs].
     pub time_per_call: f64,
     /// One entry per joint.
     pub joints: Vec<JointInverse>,
-    /// What becomes of its internal dynamics, the deflections of damped transmissions, over poses within the joints' limits.
+    /// What becomes of its internal dynamics, the deflections of damped transmissions or the links behind their motors, over poses within the
+    /// joints' limits.
     pub stability: InverseStability,
     /// What the user should know.
     pub warnings: Vec<String>,
@@ -83,11 +84,17 @@ pub struct JointInverse {
 
 impl InverseRun {
     /// Prepares the inverse of `robot` in the model `fidelity`, else the scenario's or the robot's, with at least `damping` in its
-    /// transmissions.
+    /// transmissions; the references are those of `output`.
     ///
     /// # Errors
     /// Everything in the scenario that does not fit the robot, and references that are not smooth enough.
-    pub fn new(robot: &Robot, file: &ScenarioFile, fidelity: Option<Fidelity>, damping: f64) -> Result<Self, Error> {
+    pub fn new(
+        robot: &Robot,
+        file: &ScenarioFile,
+        fidelity: Option<Fidelity>,
+        damping: f64,
+        output: InverseOutput,
+    ) -> Result<Self, Error> {
         let scenario = &file.scenario;
         let mut robot = with_least_damping(robot, damping);
         if let Some(gravity) = scenario.gravity {
@@ -105,11 +112,11 @@ impl InverseRun {
                 message: "they do not act on the inverse".to_owned(),
             });
         }
-        let inverse = InverseModel::new(&robot, robot.fidelity, 0)?;
-        let along = ReferenceInverse::new(inverse, &joints, &references, &file.keys)?;
+        let along = OutputInverse::new(&robot, robot.fidelity, output, (&joints, &references), &file.keys)?;
         let dynamics = Dynamics::new(robot.model(robot.fidelity)?);
         let sampler = Sampler::new(&robot, &joints, &dynamics)?;
-        let stability = InverseStability::of(&robot, InverseOutput::Link, POSES)?;
+        let stability = InverseStability::of(&robot, output, POSES)?;
+        warnings.extend(warning(&stability, &file.source.name));
         Ok(Self { robot, file: file.clone(), joints, references, along, dynamics, sampler, stability, warnings })
     }
 
@@ -173,8 +180,9 @@ impl InverseRun {
             let t = sample as f64 / rate;
             for i in 0..steps as u32 {
                 self.along.look(&self.references, t + f64::from(i) * step);
-                let started = Instant::now();
-                self.along.invert(step)?;
+                let now = t + f64::from(i) * step;
+                let mut started = Instant::now();
+                self.along.invert(&self.references, now, step)?;
                 time += started.elapsed().as_secs_f64();
                 calls += 1;
                 if i == 0 {
@@ -183,7 +191,9 @@ impl InverseRun {
                     recorder.record(&self.sampler.sample)?;
                     self.tally(&mut summary);
                 }
-                self.along.advance();
+                started = Instant::now();
+                self.along.advance(&self.references, now, step)?;
+                time += started.elapsed().as_secs_f64();
             }
             (summary.end_time, summary.samples) = (t, sample + 1);
             if progress(t).is_break() {
@@ -197,21 +207,20 @@ impl InverseRun {
 
     /// One sample: the state that the inverse says the robot is in, under the torques it says the motors need.
     fn take(&mut self, t: f64, points: &[Point], loads: &mut Loads) -> Result<(), Error> {
-        let inverse = self.along.inverse();
+        let along = &self.along;
         let state = StateVec {
-            q: self.along.q().to_vec(),
-            qd: self.along.derivative(1).to_vec(),
-            theta: inverse.theta(0).to_vec(),
-            thetad: inverse.theta(1).to_vec(),
+            q: along.q().to_vec(),
+            qd: along.qd().to_vec(),
+            theta: along.theta().to_vec(),
+            thetad: along.thetad().to_vec(),
         };
-        self.sampler.take(t, &mut self.dynamics, state.view(), inverse.tau(0), loads, points)
+        self.sampler.take(t, &mut self.dynamics, state.view(), along.tau(), loads, points)
     }
 
     fn empty_summary(&self) -> InverseSummary {
-        let orders = self.along.inverse().smoothness().joints;
         let joint = |(i, joint): (usize, &crate::coordinates::Coordinate)| JointInverse {
             name: joint.name.clone(),
-            derivatives_needed: orders[joint.body].position,
+            derivatives_needed: self.along.needed(joint.body),
             derivatives_given: self.references.smoothness(i),
             ..JointInverse::default()
         };
@@ -237,4 +246,20 @@ impl InverseRun {
             joint.peak_motor_speed = joint.peak_motor_speed.max(sample.thetad[i].abs());
         }
     }
+}
+
+/// What the user should know of internal dynamics that do not fade. A transmission without damping is no such case: where the links are given, its
+/// inverse has no state.
+fn warning(stability: &InverseStability, file: &str) -> Option<Warning> {
+    let (motion, remedy) = match (stability.output, stability.verdict) {
+        (_, Verdict::Stable) | (InverseOutput::Link, Verdict::Undamped) => return None,
+        (InverseOutput::Link, Verdict::Unstable) => ("grow", "prescribe the motors (`--prescribe motor`)"),
+        (InverseOutput::Motor, Verdict::Undamped) => ("do not fade", "add damping to the inverse (`--damping`)"),
+        (InverseOutput::Motor, Verdict::Unstable) => ("grow", "prescribe the links (`--prescribe link`)"),
+    };
+    Some(Warning {
+        file: file.to_owned(),
+        element: "reference".to_owned(),
+        message: format!("the internal dynamics of its inverse {motion}: {}; {remedy}", stability.reason),
+    })
 }

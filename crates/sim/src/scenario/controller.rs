@@ -1,6 +1,7 @@
 //! Controllers as a scenario names them.
 
 use super::ModelName;
+use crate::zeros::InverseOutput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -103,6 +104,9 @@ pub struct InverseOf {
     /// Least damping of the transmissions in the inverse [N m s/rad or N s/m]: undamped joints need fewer derivatives with it.
     #[serde(default)]
     pub damping: f64,
+    /// What follows the reference: the links, or the motors around which they swing. For the motors two derivatives of it are enough.
+    #[serde(default)]
+    pub output: InverseOutput,
 }
 
 impl Default for Controller {

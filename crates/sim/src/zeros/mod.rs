@@ -19,12 +19,15 @@ use crate::error::{Error, ErrorKind};
 use crate::linearize::{Linearization, Linearizer, OperatingPoint, natural_modes};
 use gyroflex::dynamics::{Acceleration, External, InverseDerivatives};
 use nalgebra::DMatrix;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// What an inverse is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum InverseOutput {
     /// The motion of the links, `q`.
+    #[default]
     Link,
     /// The motion of the motors, `θ`.
     Motor,
