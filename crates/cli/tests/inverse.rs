@@ -46,6 +46,66 @@ fn references_that_are_too_rough_are_refused_joint_by_joint() {
     assert!(damped.out.contains("internal dynamics: stable"), "{}", damped.out);
 }
 
+/// The other remedy: two derivatives are enough for the motors' motion, and what the links do behind them is said.
+#[test]
+fn motors_are_prescribed_where_the_links_need_more_derivatives() {
+    let here = folder("prescribed");
+    let scenario = |name: &str, robot: &str, order: usize| {
+        let robot = project(&format!("robots/lwr/{robot}.yaml")).display().to_string();
+        let reference = format!("{{default: {{type: filtered_step, from: 0, to: 1, order: {order}, cutoff: 2}}}}");
+        let text = format!("robot: {robot}\nduration: 0.02\nreference: {reference}\n");
+        std::fs::write(here.join(name), text).expect("the folder can be written");
+    };
+    scenario("two.yaml", "undamped", 2);
+    let refused = gyroflex(&here, &["inverse", "two.yaml"]);
+    assert_eq!(refused.code, Some(1));
+    assert!(
+        refused.err.contains("`joint1` needs 10 and has 2") && refused.err.contains("2 are enough"),
+        "{}",
+        refused.err
+    );
+
+    let swinging = gyroflex(&here, &["inverse", "two.yaml", "--prescribe", "motor"]);
+    assert_eq!(swinging.code, Some(0), "{}", swinging.err);
+    assert!(swinging.out.contains("internal dynamics: undamped, joint `"), "{}", swinging.out);
+    assert!(swinging.out.contains("2 of 2") && swinging.out.contains("`--damping`"), "{}", swinging.out);
+    assert!(swinging.err.contains("warning: ") && swinging.err.contains("do not fade"), "{}", swinging.err);
+
+    let damped = gyroflex(&here, &["inverse", "two.yaml", "--prescribe", "motor", "--damping", "15", "--json"]);
+    assert_eq!(damped.code, Some(0), "{}", damped.err);
+    assert!(!damped.err.contains("do not fade"), "{}", damped.err);
+    let summary: Value = serde_json::from_str(&damped.out).unwrap_or_else(|e| panic!("{e}: {}", damped.out));
+    assert_eq!(summary["stability"]["output"], "motor");
+    assert_eq!(summary["stability"]["verdict"], "stable");
+    assert!(summary["stability"]["slowest"]["zero"]["value"][0].as_f64().is_some_and(|rate| rate < 0.0));
+    assert_eq!(summary["joints"][6]["derivatives_needed"], 2);
+
+    scenario("one.yaml", "undamped", 1);
+    let rough = gyroflex(&here, &["inverse", "one.yaml", "--prescribe", "motor"]);
+    assert_eq!(rough.code, Some(1));
+    for part in ["`joint1` needs 2 and has 1", "`joint7` needs 2 and has 1", "remedy:"] {
+        assert!(rough.err.contains(part), "{part}: {}", rough.err);
+    }
+    let unknown = gyroflex(&here, &["inverse", "two.yaml", "--prescribe", "gear"]);
+    assert_eq!(unknown.code, Some(2), "{}", unknown.err);
+}
+
+/// Without damping the links' inverse has no internal dynamics: derivatives stand in their place.
+#[test]
+fn inverse_of_an_undamped_robot_says_how_many_derivatives_it_takes() {
+    let here = folder("undamped");
+    let robot = project("robots/lwr/undamped.yaml").display().to_string();
+    let reference = "{default: {type: filtered_step, from: 0, to: 0.1, order: 10, cutoff: 2}}";
+    std::fs::write(here.join("ten.yaml"), format!("robot: {robot}\nduration: 0.02\nreference: {reference}\n"))
+        .expect("the folder can be written");
+    let ended = gyroflex(&here, &["inverse", "ten.yaml"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.err);
+    for part in ["internal dynamics: none, 10 derivatives", "`--damping`", "`--prescribe motor`"] {
+        assert!(ended.out.contains(part), "{part}: {}", ended.out);
+    }
+    assert!(!ended.err.contains("internal dynamics"), "{}", ended.err);
+}
+
 #[test]
 fn compare_prints_a_line_a_scenario_and_the_worst_of_all_plants() {
     let here = folder("compare");
