@@ -2,7 +2,7 @@
 
 mod process;
 
-use process::{folder, gyroflex, is_complete, project};
+use process::{ROBOT, folder, gyroflex, is_complete, pendulum, project, write};
 use serde_json::Value;
 
 fn scenario(name: &str) -> String {
@@ -104,6 +104,28 @@ fn inverse_of_an_undamped_robot_says_how_many_derivatives_it_takes() {
         assert!(ended.out.contains(part), "{part}: {}", ended.out);
     }
     assert!(!ended.err.contains("internal dynamics"), "{}", ended.err);
+}
+
+/// A pendulum whose spring is weaker than gravity falls off its motor when upright, but can be led itself.
+#[test]
+fn internal_dynamics_that_grow_are_warned_of() {
+    let here = pendulum("unstable");
+    write(&here, "robot.yaml", &ROBOT.replace("stiffness: 500, damping: 1", "stiffness: 2, damping: 1"));
+    let motor = gyroflex(&here, &["inverse", "scenario.yaml", "--prescribe", "motor"]);
+    assert_eq!(motor.code, Some(0), "{}", motor.err);
+    for part in ["internal dynamics: unstable", "joint `hinge`, grows by", " at q = [", "`--prescribe link`"] {
+        assert!(motor.out.contains(part), "{part}: {}", motor.out);
+    }
+    for part in ["warning: ", "`hinge` falls away", "`--prescribe link`"] {
+        assert!(motor.err.contains(part), "{part}: {}", motor.err);
+    }
+    let link = gyroflex(&here, &["inverse", "scenario.yaml"]);
+    assert!(link.code == Some(0) && !link.err.contains("warning: "), "{}", link.err);
+    assert!(
+        link.out.contains("internal dynamics: stable, the slowest, of joint `hinge`, fades by 2.0000e0 1/s"),
+        "{}",
+        link.out
+    );
 }
 
 #[test]

@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Poses at which the internal dynamics are looked at.
-const POSES: usize = 8;
+const POSES: usize = 32;
 
 /// The longest step of the deflections of damped transmissions [s].
 const LONGEST_STEP: f64 = 1e-4;
