@@ -20,9 +20,9 @@ pub struct JointSpaceScratch<T> {
     /// Velocity.
     v: Motion<T>,
     /// `c = v × S q̇`.
-    c: Motion<T>,
+    pub(super) c: Motion<T>,
     /// Acceleration, gravity included.
-    a: Motion<T>,
+    pub(super) a: Motion<T>,
     /// Force that the present velocity and gravity ask for.
     f: Force<T>,
     /// `Iᶜ`.
@@ -30,7 +30,7 @@ pub struct JointSpaceScratch<T> {
     /// Generalised force at the joint.
     u: T,
     /// Net reflected torque on the joint's elastic rotor.
-    on_rotor: T,
+    pub(super) on_rotor: T,
 }
 
 impl<T: Scalar> JointSpaceScratch<T> {
@@ -82,7 +82,19 @@ pub fn forward_in_joint_space<T: Scalar>(
     factorise::<T, T>(model, matrix);
     solve::<T, T>(model, matrix, qdd, 1);
 
-    // Accelerations of the links, and of the rotors.
+    accelerate(model, a_world, scratch, qdd, thetadd, tau_j);
+    Ok(())
+}
+
+/// Base to tips: accelerations of the links, and of the rotors.
+pub(super) fn accelerate<T: Scalar>(
+    model: &Model<T::Param>,
+    a_world: Motion<T>,
+    scratch: &mut [JointSpaceScratch<T>],
+    qdd: &[T],
+    thetadd: &mut [T],
+    tau_j: &mut [T],
+) {
     for (i, body) in model.bodies.iter().enumerate() {
         let a_p = body.parent().map_or(a_world, |p| scratch[p].a);
         let k = body.v_index();
@@ -103,7 +115,6 @@ pub fn forward_in_joint_space<T: Scalar>(
             tau_j[k] -= rotor_torque(&drive.rotor, qdd[k], alpha);
         }
     }
-    Ok(())
 }
 
 /// Base to tips: velocities, accelerations with `q̈ = 0`, and the forces that they ask for.

@@ -10,6 +10,7 @@ mod aba_base;
 mod aba_scratch;
 mod at_base;
 mod branches;
+mod constraint;
 mod coriolis;
 mod crba;
 mod dense;
@@ -34,6 +35,11 @@ mod tree;
 pub use aba::aba;
 pub use aba_scratch::AbaScratch;
 pub use at_base::DerivativeScratch;
+pub use constraint::{
+    Anchor, Constrained, ConstrainedScratch, Constraint, ConstraintError, ConstraintMotion, ConstraintScratch, Contact,
+    Directions, Hold, Impact, PropagatedScratch, Regularisation, Solved, SupportScratch, constrained_forward_dynamics,
+    constrained_joint_matrix_len, constraint_matrix_len, constraint_motion, constraint_rows, impact, propagated_len,
+};
 pub use coriolis::{Bias, CoriolisMatrices, InertiaRates, bias, coriolis_matrices, gravity_torques, inertia_rates};
 pub use crba::{CrbaScratch, coupling, crba, reflected_inertia};
 pub use elastic_inverse::{

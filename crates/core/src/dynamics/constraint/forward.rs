@@ -1,0 +1,271 @@
+//! Forward dynamics under constraints.
+
+use super::anchor::Held;
+use super::frames::{Root, SupportScratch, mark, outward};
+use super::joint_space::{constrained_joint_matrix_len, forward};
+use super::propagate::{ConstraintScratch, PropagatedScratch, block, propagate};
+use super::solve::{Regularisation, Solved, System};
+use super::spec::{Constraint, ConstraintError, check, constraint_matrix_len, constraint_rows, propagated_len};
+use crate::Scalar;
+use crate::dispatch::{Kernel, Over};
+use crate::dynamics::aba::{self, Found, Known};
+use crate::dynamics::aba_base::Base;
+use crate::dynamics::{AbaScratch, External, Forward, JointSpaceScratch, State, check_scratch, joint_space_len};
+use crate::model::{Model, SizeError};
+use crate::spatial::{Force, Motion, Vec3};
+
+/// Scratch for [`constrained_forward_dynamics`] and [`super::impact`].
+#[derive(Debug)]
+pub struct ConstrainedScratch<'a, T> {
+    /// One record per body.
+    pub bodies: &'a mut [AbaScratch<T>],
+    /// One record per body.
+    pub supports: &'a mut [SupportScratch<T>],
+    /// One record per constraint.
+    pub constraints: &'a mut [ConstraintScratch<T>],
+    /// [`propagated_len`] records: one per constraint and body.
+    pub propagated: &'a mut [PropagatedScratch<T>],
+    /// [`constraint_matrix_len`] entries.
+    pub matrix: &'a mut [T],
+    /// [`joint_space_len`] records.
+    pub joint_space: &'a mut [JointSpaceScratch<T>],
+    /// [`constrained_joint_matrix_len`](super::constrained_joint_matrix_len) entries.
+    pub joint_matrix: &'a mut [T],
+}
+
+/// What constrained dynamics writes beside the accelerations.
+#[derive(Debug)]
+pub struct Constrained<'a, T> {
+    /// `λ`, [`constraint_rows`] entries, constraint by constraint, direction by direction [N or N m; in impacts N s or N m s].
+    pub multipliers: &'a mut [T],
+    /// Force of each constraint on its frame's body, about the frame's origin, in world axes; of coupled joints zero.
+    pub wrenches: &'a mut [Force<T>],
+}
+
+/// Accelerations of all joints and motors, and the forces of constraints, from state, motor torques and external loads: [`super::super::aba`]
+/// with something held.
+///
+/// # Errors
+/// A slice that does not fit, or a constraint that does not fit the model; nothing is written then.
+#[expect(clippy::too_many_arguments)]
+pub fn constrained_forward_dynamics<T: Scalar>(
+    model: &Model<T::Param>,
+    state: State<T>,
+    tau: &[T],
+    ext: External<T>,
+    constraints: &[Constraint<T>],
+    regularisation: Regularisation<T>,
+    scratch: ConstrainedScratch<T>,
+    out: Forward<T>,
+    forces: Constrained<T>,
+) -> Result<Solved<T>, ConstraintError> {
+    super::super::check_state(model, &state)?;
+    super::super::check_external(model, &ext)?;
+    out.check(model, tau)?;
+    check_sizes(model, constraints, &scratch, &forces)?;
+    if model.has_remote_rigid_rotor() {
+        return forward(model, state, tau, ext, constraints, regularisation, scratch, out, forces);
+    }
+    let (mut scratch, mut out, mut forces) = (scratch, out, forces);
+    let solved = T::dispatch(ConstrainedAba {
+        model,
+        state: &state,
+        tau,
+        ext: &ext,
+        constraints,
+        regularisation: &regularisation,
+        scratch: &mut scratch,
+        out: &mut out,
+        forces: &mut forces,
+    })?;
+    Ok(solved)
+}
+
+pub(super) fn check_sizes<T: Scalar>(
+    model: &Model<T::Param>,
+    constraints: &[Constraint<T>],
+    scratch: &ConstrainedScratch<T>,
+    forces: &Constrained<T>,
+) -> Result<(), ConstraintError> {
+    check(model, constraints)?;
+    check_scratch(model, scratch.bodies)?;
+    check_scratch(model, scratch.supports)?;
+    SizeError::check("constraint scratch", scratch.constraints.len(), constraints.len())?;
+    SizeError::check("propagated scratch", scratch.propagated.len(), propagated_len(model, constraints))?;
+    SizeError::check("matrix", scratch.matrix.len(), constraint_matrix_len(constraints))?;
+    SizeError::check("joint_space scratch", scratch.joint_space.len(), joint_space_len(model))?;
+    let joint_matrix = constrained_joint_matrix_len(model, constraints);
+    SizeError::check("joint_matrix", scratch.joint_matrix.len(), joint_matrix)?;
+    SizeError::check("multipliers", forces.multipliers.len(), constraint_rows(constraints))?;
+    SizeError::check("wrenches", forces.wrenches.len(), constraints.len())?;
+    Ok(())
+}
+
+struct ConstrainedAba<'a, 'm, 's, T: Scalar> {
+    model: &'a Model<'m, T::Param>,
+    state: &'a State<'a, T>,
+    tau: &'a [T],
+    ext: &'a External<'a, T>,
+    constraints: &'a [Constraint<T>],
+    regularisation: &'a Regularisation<T>,
+    scratch: &'a mut ConstrainedScratch<'s, T>,
+    out: &'a mut Forward<'s, T>,
+    forces: &'a mut Constrained<'s, T>,
+}
+
+impl<T: Scalar> Kernel<T> for ConstrainedAba<'_, '_, '_, T> {
+    type Output = Result<Solved<T>, SizeError>;
+
+    #[inline(always)]
+    fn run<F: Over<T>>(self) -> Result<Solved<T>, SizeError> {
+        if self.model.plain { self.passes::<F, true>() } else { self.passes::<F, false>() }
+    }
+}
+
+impl<T: Scalar> ConstrainedAba<'_, '_, '_, T> {
+    #[inline(always)]
+    fn passes<F: Over<T>, const PLAIN: bool>(self) -> Result<Solved<T>, SizeError> {
+        let Self { model, state, tau, ext, constraints, regularisation, scratch, out, forces } = self;
+        let known = Known::of(model, state, tau, ext)?;
+        let ConstrainedScratch { bodies, supports, constraints: kept, propagated, matrix, .. } = scratch;
+        let (_, bodies) = known.tree.bodies_mut("scratch", bodies)?;
+        let (_, supports) = known.tree.bodies_mut("scratch", supports)?;
+        let mut found = Found::of(&known.tree, out)?;
+        let mut base = aba::outward::<T, F, PLAIN>(&known, bodies, found.tau_j);
+        aba::inward::<T, F, PLAIN>(&known, bodies, &mut base);
+
+        let lift = -model.gravity.map(F::from_param);
+        let root = Root::of(&known.tree, state.q, state.qd);
+        let (free_base, _) = base.acceleration::<T>(lift, tau, ext);
+        let at = Place { known: &known, root, lift: root.pose.rot * lift, free_base };
+        at.gather::<PLAIN>(constraints, &base, bodies, supports, kept, propagated, matrix);
+
+        // Φ̈ = −2 ω Φ̇ − ω² Φ
+        let mut row = 0;
+        let mut system = System::of(forces.multipliers.len(), matrix);
+        for (constraint, kept) in constraints.iter().zip(kept.iter()) {
+            let held = at.held(constraint, supports);
+            let omega = F::load(constraint.stabilisation);
+            for k in (0..6).filter(|k| constraint.holds(*k)) {
+                let wanted = -(omega * (held.velocity[k] + held.velocity[k] + omega * held.error[k]));
+                if let Some(b) = system.b.get_mut(row) {
+                    *b = (wanted - F::load(kept.free[k])).store();
+                }
+                row += 1;
+            }
+        }
+        let solved = system.solve::<F>(constraints, regularisation, false, forces.multipliers);
+        at.load(constraints, &mut base, bodies, supports, kept, propagated, forces);
+        aba::accelerations::<T, F, PLAIN>(&known, bodies, &base, &mut found);
+        Ok(solved)
+    }
+}
+
+/// A robot at a state, between the second and the third sweep.
+pub(super) struct Place<'a, 'm, T: Scalar, F> {
+    pub(super) known: &'a Known<'a, 'm, T>,
+    pub(super) root: Root<F>,
+    /// Acceleration upwards that stands for gravity, in base axes.
+    pub(super) lift: Vec3<F>,
+    /// The base's acceleration without constraints.
+    pub(super) free_base: Motion<F>,
+}
+
+impl<T: Scalar, F: Over<T>> Place<'_, '_, T, F> {
+    #[inline(always)]
+    pub(super) fn held(&self, constraint: &Constraint<T>, supports: &[SupportScratch<T>]) -> Held<F> {
+        Held::of(constraint, &self.known.tree, &self.root, self.known.q, self.known.qd, supports)
+    }
+
+    /// `J M⁻¹ Jᵀ` into the matrix, and `Φ̈` without the constraints' forces into `kept`.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments)]
+    pub(super) fn gather<const PLAIN: bool>(
+        &self,
+        constraints: &[Constraint<T>],
+        base: &Base<F>,
+        bodies: &[AbaScratch<T>],
+        supports: &mut [SupportScratch<T>],
+        kept: &mut [ConstraintScratch<T>],
+        propagated: &mut [PropagatedScratch<T>],
+        matrix: &mut [T],
+    ) {
+        let (tree, n) = (&self.known.tree, bodies.len());
+        mark(tree, constraints, supports);
+        for (s, x) in bodies.iter().zip(supports.iter_mut()) {
+            x.theta = s.theta;
+        }
+        outward(tree, &self.root, self.known.q, self.known.qd, supports);
+        for (k, (constraint, kept)) in constraints.iter().zip(kept.iter_mut()).enumerate() {
+            let held = self.held(constraint, supports);
+            let way = propagated.get_mut(k * n..(k + 1) * n).unwrap_or_default();
+            let free = (self.lift, self.free_base);
+            propagate(constraint, &held, tree, base, free, (bodies, supports), (way, kept));
+        }
+        let way_of = |k: usize| propagated.get(k * n..(k + 1) * n).unwrap_or_default();
+        let size = constraint_rows(constraints);
+        let mut first = 0;
+        for (k, (a, kept_a)) in constraints.iter().zip(kept.iter()).enumerate() {
+            let mut column = first;
+            for (l, (b, kept_b)) in constraints.iter().zip(kept.iter()).enumerate().skip(k) {
+                let block: [[F; 6]; 6] = block(bodies, (way_of(k), kept_a), (way_of(l), kept_b));
+                let mut row = first;
+                for (_, entries) in block.iter().enumerate().filter(|(i, _)| a.holds(*i)) {
+                    let mut to = column;
+                    for (_, entry) in entries.iter().enumerate().filter(|(j, _)| b.holds(*j)) {
+                        for at in [row * size + to, to * size + row] {
+                            if let Some(place) = matrix.get_mut(at) {
+                                *place = entry.store();
+                            }
+                        }
+                        to += 1;
+                    }
+                    row += 1;
+                }
+                column += b.rows();
+            }
+            first += a.rows();
+        }
+    }
+
+    /// The multipliers' forces on joints and base, and in the world.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments)]
+    pub(super) fn load(
+        &self,
+        constraints: &[Constraint<T>],
+        base: &mut Base<F>,
+        bodies: &mut [AbaScratch<T>],
+        supports: &[SupportScratch<T>],
+        kept: &[ConstraintScratch<T>],
+        propagated: &[PropagatedScratch<T>],
+        forces: &mut Constrained<T>,
+    ) {
+        let n = bodies.len();
+        let mut first = 0;
+        for (k, (constraint, kept)) in constraints.iter().zip(kept).enumerate() {
+            let mut lambda = [F::zero(); 6];
+            let mut row = first;
+            for (direction, entry) in lambda.iter_mut().enumerate() {
+                if constraint.holds(direction) {
+                    *entry = forces.multipliers.get(row).map_or(F::zero(), |x| F::load(*x));
+                    row += 1;
+                }
+            }
+            first = row;
+            let way = propagated.get(k * n..(k + 1) * n).unwrap_or_default();
+            for (s, w) in bodies.iter_mut().zip(way).filter(|(_, w)| w.on_way) {
+                let sum = w.taken.iter().zip(lambda).fold(F::load(s.u), |sum, (t, l)| F::load(*t).mul_add(l, sum));
+                s.u = sum.store();
+            }
+            for (force, l) in kept.at_base.iter().zip(lambda) {
+                base.p -= force.map(F::load).scale(l);
+            }
+            let held = self.held(constraint, supports);
+            let total = held.wrenches.iter().zip(lambda).fold(Force::zero(), |sum, (f, l)| sum + f.scale(l));
+            if let Some(wrench) = forces.wrenches.get_mut(k) {
+                *wrench = held.wrench_in_world(&self.root, total).map(F::store);
+            }
+        }
+    }
+}
