@@ -154,6 +154,11 @@ impl<T: Real> Core<T> {
         Power { supplied: p.supplied.to_f64(), dissipated: p.dissipated.to_f64() }
     }
 
+    /// The same for what does not fail.
+    pub(crate) fn call_any<R>(&self, s: &Point, mut run: impl FnMut(&Inputs<T>) -> R) -> R {
+        self.call(s, |x| Ok(run(x)))
+    }
+
     pub(crate) fn call<R>(&self, s: &Point, mut run: impl FnMut(&Inputs<T>) -> Result<R, SizeError>) -> R {
         let x = Inputs::new(s);
         if self.dirty {

@@ -1,9 +1,11 @@
 //! Seeded random robots and states: the same seed and options give the same robot on every machine.
 
+mod constraint;
 mod drive;
 mod robot;
 mod state;
 
+pub use constraint::anchored_at;
 pub use robot::RandomRobot;
 pub use state::random_point;
 
