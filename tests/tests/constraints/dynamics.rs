@@ -141,7 +141,7 @@ fn wrenches_are_the_multipliers_in_world_axes() {
 
 #[test]
 fn slipping_contacts_are_pushed_along_their_normal_force() {
-    let mut slips = 0;
+    let slips = core::cell::Cell::new(0);
     for_held::<f64>(200, &Options::default(), &[Fidelity::Complete], tol(1e-12, 0.0), |t, held| {
         let found = t.core.constrained(&t.state, held);
         let mut first = 0;
@@ -154,13 +154,13 @@ fn slipping_contacts_are_pushed_along_their_normal_force() {
                 for d in (3..6).filter(|d| *d != contact.normal && directions.contains(*d)) {
                     let want = ratio.to_array()[d - 3] * normal;
                     t.assert_close("friction", &[found.multipliers[row(d)]], &[want], 0.0);
+                    slips.set(slips.get() + 1);
                 }
             }
             first += c.rows();
         }
     });
-    slips += 1;
-    assert!(slips > 0);
+    assert!(slips.get() > 10, "only {} slipping directions", slips.get());
 }
 
 #[test]

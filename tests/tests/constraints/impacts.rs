@@ -1,6 +1,6 @@
 //! Impacts.
 
-use super::for_held;
+use super::{for_held, for_sticking};
 use gyroflex::dynamics::Hold;
 use gyroflex::model::Fidelity;
 use gyroflex_testkit::State;
@@ -9,11 +9,10 @@ use gyroflex_testkit::tolerance::{Real, norm, tol};
 use gyroflex_tests::{Held, Trial, small};
 use nalgebra::DVector;
 
-/// All contacts plastic and sticking.
 fn plastic(held: &Held) -> Held {
     let mut held = held.clone();
     for contact in held.constraints.iter_mut().filter_map(|c| c.contact.as_mut()) {
-        (contact.restitution, contact.slip) = (0.0, None);
+        contact.restitution = 0.0;
     }
     held
 }
@@ -67,15 +66,11 @@ fn single_precision_has_the_same_momentum() {
 
 #[test]
 fn what_is_caught_moves_no_more_or_rebounds_as_it_should() {
-    for_held::<f64>(400, &Options::default(), &Fidelity::ALL, tol(1e-8, 0.0), |t, held| {
-        let mut held = held.clone();
-        for contact in held.constraints.iter_mut().filter_map(|c| c.contact.as_mut()) {
-            contact.slip = None;
-        }
-        let after = t.core.impact(&t.state, &held);
-        let [_, before, _] = t.core.constraint_motion(&t.state.q, &t.state.qd, &held);
-        let [_, velocity, _] = t.core.constraint_motion(&t.state.q, &after.links, &held);
-        let want: Vec<f64> = before.iter().zip(rebounds(&held)).map(|(v, r)| v * (1.0 - r)).collect();
+    for_sticking::<f64>(400, &Options::default(), &Fidelity::ALL, tol(1e-8, 0.0), |t, held| {
+        let after = t.core.impact(&t.state, held);
+        let [_, before, _] = t.core.constraint_motion(&t.state.q, &t.state.qd, held);
+        let [_, velocity, _] = t.core.constraint_motion(&t.state.q, &after.links, held);
+        let want: Vec<f64> = before.iter().zip(rebounds(held)).map(|(v, r)| v * (1.0 - r)).collect();
         t.assert_close("velocity of the constraints", &velocity, &want, norm(&before).max(norm(&after.links)));
     });
 }
@@ -87,31 +82,29 @@ fn kinetic<T: Real>(t: &Trial<'_, T>, qd: &[f64], thetad: &[f64]) -> f64 {
 
 #[test]
 fn kinetic_energy_never_grows_in_a_plastic_impact() {
-    for_held::<f64>(400, &Options::default(), &Fidelity::ALL, tol(0.0, 0.0), |t, held| {
+    for_sticking::<f64>(400, &Options::default(), &Fidelity::ALL, tol(0.0, 0.0), |t, held| {
         let after = t.core.impact(&t.state, &plastic(held));
         let (before, left) = (kinetic(t, &t.state.qd, &t.state.thetad), kinetic(t, &after.links, &after.motors));
         assert!(left <= before * (1.0 + 1e-9), "{before} J grow to {left} J; {t}");
     });
 }
 
-/// The blow of a rigid gear is felt with the reflected inertia of its rotor, that of an elastic one without.
+/// Without gyroscopics a rotor does not even feel its carrier turn.
 #[test]
-fn elastic_rotors_keep_their_angular_momentum() {
+fn elastic_rotors_keep_their_speed_in_the_reduced_model() {
     let options = Options { driven: 1.0, elastic: 1.0, remote_mount: 0.0, ..Options::default() };
     for_held::<f64>(200, &options, &[Fidelity::Reduced], tol(0.0, 0.0), |t, held| {
         let after = t.core.impact(&t.state, held);
-        for (k, body) in t.core.model().bodies().iter().filter(|b| b.is_elastic()).map(|b| (b.v_index(), b)) {
-            assert!(body.is_elastic());
+        for k in t.core.model().bodies().iter().filter(|b| b.is_elastic()).map(|b| b.v_index()) {
             assert_eq!(after.motors[k], t.state.thetad[k], "a rotor without gyroscopics keeps its speed; {t}");
         }
     });
 }
 
 #[test]
-fn contacts_that_would_pull_are_released_and_then_separate_or_are_left() {
-    let mut released = 0.0;
+fn contacts_that_would_pull_are_released() {
     let sum = core::cell::Cell::new(0.0);
-    for_held::<f64>(400, &Options::default(), &[Fidelity::Complete], tol(0.0, 0.0), |t, held| {
+    for_sticking::<f64>(400, &Options::default(), &[Fidelity::Complete], tol(0.0, 0.0), |t, held| {
         let mut held = plastic(held);
         held.release = true;
         let after = t.core.impact(&t.state, &held);
@@ -126,6 +119,5 @@ fn contacts_that_would_pull_are_released_and_then_separate_or_are_left() {
             first += c.rows();
         }
     });
-    released += sum.get();
-    assert!(released > 20.0, "only {released} contacts were released");
+    assert!(sum.get() > 20.0, "only {} contacts were released", sum.get());
 }

@@ -1,24 +1,14 @@
 //! Constraints that depend on each other.
 
-use super::for_held;
+use super::for_sticking;
 use gyroflex::model::Fidelity;
 use gyroflex_testkit::random::Options;
 use gyroflex_testkit::tolerance::{norm, tol};
 use gyroflex_tests::Held;
 
-/// Without slip: what slips is not the same constraint twice.
-fn sticking(held: &Held) -> Held {
-    let mut held = held.clone();
-    for contact in held.constraints.iter_mut().filter_map(|c| c.contact.as_mut()) {
-        contact.slip = None;
-    }
-    held
-}
-
 #[test]
 fn constraints_said_twice_are_kept_once() {
-    for_held::<f64>(200, &Options::default(), &Fidelity::ALL, tol(1e-6, 0.0), |t, held| {
-        let held = sticking(held);
+    for_sticking::<f64>(200, &Options::default(), &Fidelity::ALL, tol(1e-6, 0.0), |t, held| {
         let mut twice = Held { threshold: 1e-8, ..held.clone() };
         twice.constraints.extend(held.constraints.clone());
         let (once, doubled) = (t.core.constrained(&t.state, &held), t.core.constrained(&t.state, &twice));
@@ -35,8 +25,7 @@ fn flat(wrenches: &[[f64; 6]]) -> Vec<f64> {
 
 #[test]
 fn constraints_that_contradict_each_other_are_told() {
-    for_held::<f64>(200, &Options::default(), &[Fidelity::Complete], tol(0.0, 0.0), |t, held| {
-        let held = sticking(held);
+    for_sticking::<f64>(200, &Options::default(), &[Fidelity::Complete], tol(0.0, 0.0), |t, held| {
         let mut twice = Held { threshold: 1e-8, ..held.clone() };
         // The same directions, drawn back at another rate: they cannot both be.
         twice.constraints.extend(
@@ -51,8 +40,7 @@ fn constraints_that_contradict_each_other_are_told() {
 
 #[test]
 fn damped_constraints_share_the_load_and_give_way_a_little() {
-    for_held::<f64>(200, &Options::default(), &[Fidelity::Complete], tol(1e-4, 0.0), |t, held| {
-        let held = sticking(held);
+    for_sticking::<f64>(200, &Options::default(), &[Fidelity::Complete], tol(1e-4, 0.0), |t, held| {
         let mut twice = Held { damping: 1e-9, threshold: 0.0, ..held.clone() };
         twice.constraints.extend(held.constraints.clone());
         let (once, shared) = (t.core.constrained(&t.state, &held), t.core.constrained(&t.state, &twice));

@@ -153,13 +153,21 @@ impl<'a, T: Scalar> System<'a, T> {
         });
 
         // Elimination without exchanging rows: A is that of a positive quadratic form, but for what slips.
+        // A direction in which nothing can move has an entry of rounding alone.
+        let mut floor = F::zero();
+        for k in 0..n {
+            let own: F = Self::at(self.a, k * n + k);
+            floor = own.select_less(floor, floor, own);
+        }
+        let floor = threshold.mul_add(floor, F::from_f64(1e-20));
         let (mut dependent, mut contradiction, mut independence) = (F::zero(), F::zero(), F::one());
         for k in 0..n {
             let (own, left): (F, F) = (Self::at(self.a, k * n + k), Self::at(self.work, k * n + k));
             let counts: F = Self::at(self.counts, k);
-            let own = own.select_less(F::from_f64(f64::MIN_POSITIVE), F::from_f64(f64::MIN_POSITIVE), own);
-            let part = left.select_less(threshold * own, F::zero(), F::one());
-            let safe = left.select_less(threshold * own, F::one(), left);
+            let own = own.select_less(floor, floor, own);
+            let least = threshold.mul_add(own, F::from_f64(1e-30));
+            let part = left.select_less(least, F::zero(), F::one());
+            let safe = left.select_less(least, F::one(), left);
             let inverse = part / safe;
             dependent += F::one() - part;
             // A direction that is left out has no equation left but this one.
