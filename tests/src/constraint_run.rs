@@ -3,10 +3,11 @@
 use crate::Core;
 use crate::core_run::{cast, double, nan};
 use gyroflex::dynamics::{
-    AbaScratch, Anchor, Constrained, ConstrainedScratch, Constraint, ConstraintMotion, ConstraintScratch, Contact,
-    Forward, Frame, Hold, Impact, JointSpaceScratch, PropagatedScratch, Regularisation, Solved, SupportScratch,
-    constrained_forward_dynamics, constrained_joint_matrix_len, constraint_matrix_len, constraint_motion,
-    constraint_rows, impact, joint_space_len, propagated_len,
+    AbaScratch, Acceleration, Anchor, Constrained, ConstrainedScratch, Constraint, ConstraintMotion, ConstraintScratch,
+    Contact, Forward, Frame, Hold, Impact, Inverse, JointSpaceScratch, PropagatedScratch, Regularisation, RneaScratch,
+    Solved, SupportScratch, TorqueDistribution, constrained_forward_dynamics, constrained_inverse_dynamics,
+    constrained_inverse_len, constrained_joint_matrix_len, constraint_matrix_len, constraint_motion, constraint_rows,
+    impact, joint_space_len, propagated_len,
 };
 use gyroflex::model::Model;
 use gyroflex::spatial::Force;
@@ -179,6 +180,45 @@ impl<T: Real> Core<T> {
                 .expect("the constraints fit the robot")
         });
         storage.motion(&qd, &thetad, &gears, solved)
+    }
+
+    /// `constrained_inverse_dynamics`: torques of transmissions, of motors, and multipliers. Velocities in `passive` are driven by nothing,
+    /// all others cost `torques`; a multiplier costs `cost` beside.
+    pub fn constrained_inverse(
+        &self,
+        s: &Point,
+        held: &Held,
+        torques: &[f64],
+        passive: &[usize],
+        cost: f64,
+    ) -> [Vec<f64>; 3] {
+        let (model, nv, constraints) = (self.model(), self.model().nv(), held.cast::<T>());
+        let mut scratch = vec![RneaScratch::new(); model.bodies().len()];
+        let mut supports = vec![SupportScratch::new(); model.bodies().len()];
+        let mut matrix = vec![nan(); constrained_inverse_len(&model, &constraints, passive.len())];
+        let (mut tau_j, mut tau, mut multipliers) = (vec![nan(); nv], vec![nan(); nv], vec![nan(); held.rows()]);
+        let (torques, costs) = (cast::<T>(torques), vec![T::from_f64(cost); held.rows()]);
+        let distribution = TorqueDistribution { torques: &torques, passive, multipliers: &costs, wanted: &[] };
+        self.call_any(s, |x| {
+            let accel = Acceleration { qdd: &x.qdd, thetadd: &x.thetadd };
+            let out = Inverse { tau_j: &mut tau_j, tau: &mut tau };
+            constrained_inverse_dynamics(
+                &model,
+                x.state(),
+                accel,
+                x.external(),
+                &constraints,
+                distribution,
+                held.regularisation(),
+                &mut scratch,
+                &mut supports,
+                &mut matrix,
+                out,
+                &mut multipliers,
+            )
+            .expect("the constraints fit the robot")
+        });
+        [double(&tau_j), double(&tau), double(&multipliers)]
     }
 
     /// `constraint_motion`: errors, velocities, and the Jacobian by rows.

@@ -262,3 +262,93 @@ fn neither_references_nor_filters_nor_shapers_allocate() {
     assert_eq!(count, 0);
     assert!(sum.iter().chain(&out).all(|x| x.is_finite() && *x != 0.0));
 }
+
+#[test]
+fn constrained_dynamics_do_not_allocate() {
+    // One robot by the articulated-body route, one by the inertia matrix.
+    let plain = [
+        link(None, [0.0, 1.0, 0.0], [0.0; 3], [0.1, 0.0, 0.0]),
+        link(Some(0), [0.0, 1.0, 0.0], [0.3, 0.0, 0.0], [0.1, 0.0, 0.0]),
+        link(Some(1), [0.0, 1.0, 0.0], [0.3, 0.0, 0.0], [0.1, 0.0, 0.0]),
+    ];
+    held(&Lowered::new(&plain, [0.0, 0.0, -9.81], Fidelity::Complete));
+    held(&robot());
+}
+
+fn held(robot: &Lowered) {
+    let model = robot.model();
+    let (nv, bodies) = (model.nv(), model.bodies().len());
+    let q = if model.is_floating() { POSITIONS.to_vec() } else { vec![0.4; 3] };
+    let (rates, mut a, mut b, mut c) = (vec![0.1; nv], vec![0.0; nv], vec![0.0; nv], vec![0.0; nv]);
+    let foot = Frame { body: 2, placement: Transform::identity() };
+    let anchor = Anchor { body: None, placement: Transform::identity() };
+    let hold = Hold::Frame { frame: foot, anchor, directions: Directions::PLANAR_POINT };
+    let contact = Some(Contact { normal: 5, restitution: 0.2, slip: None });
+    let constraints = [Constraint { hold, stabilisation: 10.0, contact }];
+    let rows = constraint_rows(&constraints);
+    let passive = [0];
+    let mut aba_scratch = vec![AbaScratch::new(); bodies];
+    let mut rnea_scratch = vec![RneaScratch::new(); bodies];
+    let mut supports = vec![SupportScratch::new(); bodies];
+    let mut kept = vec![ConstraintScratch::new(); 1];
+    let mut propagated = vec![PropagatedScratch::new(); propagated_len(&model, &constraints)];
+    let mut matrix = vec![0.0; constraint_matrix_len(&constraints)];
+    let mut inverse_matrix = vec![0.0; constrained_inverse_len(&model, &constraints, passive.len())];
+    let mut joint_space = vec![JointSpaceScratch::new(); joint_space_len(&model)];
+    let mut joint_matrix = vec![0.0; constrained_joint_matrix_len(&model, &constraints)];
+    let (mut multipliers, mut wrenches) = (vec![0.0; rows], vec![gyroflex::spatial::Force::zero(); 1]);
+    let regularisation = Regularisation::rank_revealing(1e-9);
+    let count = allocations(|| {
+        let state = State { q: &q, qd: &rates, theta: &rates, thetad: &rates };
+        for turn in 0..2 {
+            let scratch = ConstrainedScratch {
+                bodies: &mut aba_scratch,
+                supports: &mut supports,
+                constraints: &mut kept,
+                propagated: &mut propagated,
+                matrix: &mut matrix,
+                joint_space: &mut joint_space,
+                joint_matrix: &mut joint_matrix,
+            };
+            let forces = Constrained { multipliers: &mut multipliers, wrenches: &mut wrenches };
+            if turn == 0 {
+                let out = Forward { qdd: &mut a, thetadd: &mut b, tau_j: &mut c };
+                constrained_forward_dynamics(
+                    &model,
+                    state,
+                    &rates,
+                    External::none(),
+                    &constraints,
+                    regularisation,
+                    scratch,
+                    out,
+                    forces,
+                )
+                .unwrap();
+            } else {
+                let out = Impact { qd: &mut a, thetad: &mut b, gears: &mut c };
+                impact(&model, state, &constraints, true, regularisation, scratch, out, forces).unwrap();
+            }
+        }
+        let distribution =
+            TorqueDistribution { torques: &rates, passive: &passive, multipliers: &[1e-6; 2], wanted: &[] };
+        let accel = Acceleration { qdd: &rates, thetadd: &rates };
+        constrained_inverse_dynamics(
+            &model,
+            state,
+            accel,
+            External::none(),
+            &constraints,
+            distribution,
+            regularisation,
+            &mut rnea_scratch,
+            &mut supports,
+            &mut inverse_matrix,
+            Inverse { tau_j: &mut a, tau: &mut b },
+            &mut multipliers,
+        )
+        .unwrap();
+    });
+    assert_eq!(count, 0);
+    assert!(multipliers.iter().all(|x: &f64| x.is_finite()));
+}

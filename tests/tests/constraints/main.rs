@@ -2,6 +2,7 @@
 
 mod dynamics;
 mod impacts;
+mod inverse;
 mod solving;
 
 use gyroflex::model::Fidelity;

@@ -110,7 +110,7 @@ impl<F: Scalar> Held<F> {
     #[inline(always)]
     pub(super) fn wrench_in_world(&self, root: &Root<F>, total: Force<F>) -> Force<F> {
         let about_point = total.ang - self.point.cross(total.lin);
-        Force { ang: root.to_world(about_point), lin: root.to_world(total.lin) }
+        Force { ang: root.in_world(about_point), lin: root.in_world(total.lin) }
     }
 }
 

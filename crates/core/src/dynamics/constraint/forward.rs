@@ -47,6 +47,62 @@ pub struct Constrained<'a, T> {
 ///
 /// # Errors
 /// A slice that does not fit, or a constraint that does not fit the model; nothing is written then.
+///
+/// # Example
+///
+/// Two links of a chain hang from the world at both ends: the supports share the weight.
+///
+/// ```
+/// use gyroflex::dynamics::*;
+/// # use gyroflex::model::*;
+/// use gyroflex::spatial::{Force, Transform, Vec3};
+/// # use gyroflex::spatial::{Mat3, SpatialInertia, SymMat3};
+/// # let at = |x: f64| Transform::from_pose(Mat3::identity(), Vec3::new(x, 0.0, 0.0));
+/// # let link = |parent, x| BodySpec {
+/// #     parent,
+/// #     joint: JointKind::Revolute,
+/// #     axis: Vec3::new(0.0, 1.0, 0.0),
+/// #     placement: at(x),
+/// #     inertia: SpatialInertia::from_com(2.0, Vec3::new(0.5, 0.0, 0.0), SymMat3::diagonal(1e-3, 0.1, 0.1)),
+/// #     friction: Friction::none(),
+/// #     drive: None,
+/// # };
+/// # let robot =
+/// #     RobotSpec { bodies: &[link(None, 0.0), link(Some(0), 1.0)], spring_tables: &[], gravity: Vec3::new(0.0, 0.0, -9.81) };
+/// # let mut bodies = [Body::empty(); 2];
+/// # let model = robot.lower(Fidelity::Complete, &mut bodies, &mut [])?;
+/// // The end of the second link is held where it is: 60° down and 60° up, an equilateral triangle.
+/// let (q, rest) = ([1.0471975511965976, -2.0943951023931953], [0.0; 2]);
+/// let end = Frame { body: 1, placement: Transform { pos: Vec3::new(1.0, 0.0, 0.0), ..Transform::identity() } };
+/// let anchor = Anchor { body: None, placement: Transform { pos: Vec3::new(1.0, 0.0, 0.0), ..Transform::identity() } };
+/// let hold = Hold::Frame { frame: end, anchor, directions: Directions::PLANAR_POINT };
+/// let constraints = [Constraint { hold, stabilisation: 0.0, contact: None }];
+///
+/// let (mut qdd, mut thetadd, mut tau_j) = ([0.0_f64; 2], [0.0; 2], [0.0; 2]);
+/// let (mut multipliers, mut wrenches) = ([0.0; 2], [Force::<f64>::zero(); 1]);
+/// constrained_forward_dynamics(
+///     &model,
+///     State { q: &q, qd: &rest, theta: &rest, thetad: &rest },
+///     &rest,
+///     External::none(),
+///     &constraints,
+///     Regularisation::rank_revealing(1e-9),
+///     ConstrainedScratch {
+///         bodies: &mut [AbaScratch::new(); 2],
+///         supports: &mut [SupportScratch::new(); 2],
+///         constraints: &mut [ConstraintScratch::new(); 1],
+///         propagated: &mut [PropagatedScratch::new(); 2],
+///         matrix: &mut [0.0; 12],
+///         joint_space: &mut [],
+///         joint_matrix: &mut [],
+///     },
+///     Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j },
+///     Constrained { multipliers: &mut multipliers, wrenches: &mut wrenches },
+/// )?;
+/// assert!(qdd[0].abs() < 1e-9 && qdd[1].abs() < 1e-9);
+/// assert!((wrenches[0].lin.z - 2.0 * 9.81).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[expect(clippy::too_many_arguments)]
 pub fn constrained_forward_dynamics<T: Scalar>(
     model: &Model<T::Param>,
@@ -209,18 +265,16 @@ impl<T: Scalar, F: Over<T>> Place<'_, '_, T, F> {
             let mut column = first;
             for (l, (b, kept_b)) in constraints.iter().zip(kept.iter()).enumerate().skip(k) {
                 let block: [[F; 6]; 6] = block(bodies, (way_of(k), kept_a), (way_of(l), kept_b));
-                let mut row = first;
-                for (_, entries) in block.iter().enumerate().filter(|(i, _)| a.holds(*i)) {
-                    let mut to = column;
-                    for (_, entry) in entries.iter().enumerate().filter(|(j, _)| b.holds(*j)) {
+                let rows = block.iter().enumerate().filter(|(i, _)| a.holds(*i)).map(|(_, entries)| entries);
+                for (row, entries) in (first..).zip(rows) {
+                    let entries = entries.iter().enumerate().filter(|(j, _)| b.holds(*j)).map(|(_, entry)| entry);
+                    for (to, entry) in (column..).zip(entries) {
                         for at in [row * size + to, to * size + row] {
                             if let Some(place) = matrix.get_mut(at) {
                                 *place = entry.store();
                             }
                         }
-                        to += 1;
                     }
-                    row += 1;
                 }
                 column += b.rows();
             }

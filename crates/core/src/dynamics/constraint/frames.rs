@@ -67,7 +67,7 @@ impl<F: Scalar> Root<F> {
 
     /// A vector from base to world axes.
     #[inline(always)]
-    pub(super) fn to_world(&self, v: Vec3<F>) -> Vec3<F> {
+    pub(super) fn in_world(&self, v: Vec3<F>) -> Vec3<F> {
         self.pose.rot.transpose_mul(v)
     }
 }

@@ -38,6 +38,7 @@ pub struct Impact<'a, T> {
 ///
 /// # Errors
 /// A slice that does not fit, or a constraint that does not fit the model; nothing is written then.
+#[expect(clippy::too_many_arguments)]
 pub fn impact<T: Scalar>(
     model: &Model<T::Param>,
     state: State<T>,

@@ -209,7 +209,7 @@ pub(super) fn check<P: Scalar, T: Scalar>(
     for (k, constraint) in constraints.iter().enumerate() {
         match &constraint.hold {
             Hold::Frame { frame, anchor, .. } => {
-                for body in core::iter::once(frame.body).chain(anchor.body).filter(|body| *body >= bodies) {
+                if let Some(body) = [Some(frame.body), anchor.body].into_iter().flatten().find(|body| *body >= bodies) {
                     return Err(ConstraintError::NoSuchBody { constraint: k, body });
                 }
                 if anchor.body == Some(frame.body) {
