@@ -352,3 +352,30 @@ fn held(robot: &Lowered) {
     assert_eq!(count, 0);
     assert!(multipliers.iter().all(|x: &f64| x.is_finite()));
 }
+
+#[test]
+fn the_sliding_mode_controller_does_not_allocate() {
+    let (gains, ones) = ([10.0; 3], [1.0; 5]);
+    let [mut integral, mut sliding] = [[0.0; 3]; 2];
+    let (mut matrix, mut input) = ([0.0; 12], [0.0; 5]);
+    let gain = [3.0, 1.0, 0.0, 0.0, 1.0, 0.0, 2.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 4.0, 0.0];
+    let count = allocations(|| {
+        let mut law = SlidingMode {
+            lambda: &gains,
+            steepness: &gains,
+            sigma: &gains,
+            eta: &ones,
+            weights: &ones,
+            independence: 1e-12,
+            integral: &mut integral,
+        };
+        let plant = InputOutput { drift: &gains, gain: &gain, bias: &ones, preferred: &ones };
+        let (desired, measured) = (Outputs { p: &[0.0; 3], pd: &[0.0; 3] }, Outputs { p: &[0.1; 3], pd: &[0.2; 3] });
+        for _ in 0..10 {
+            let scratch = SlidingScratch { sliding: &mut sliding, matrix: &mut matrix };
+            law.tick(plant, desired, &gains, measured, 1e-3, scratch, &mut input).unwrap();
+        }
+    });
+    assert_eq!(count, 0);
+    assert!(input.iter().chain(&integral).chain(&sliding).all(|x: &f64| x.is_finite() && *x != 0.0));
+}

@@ -11,6 +11,7 @@ pub mod equilibrium;
 pub mod error;
 pub mod eval;
 pub mod export;
+pub mod gait;
 pub mod info;
 pub mod inverse;
 pub mod linearize;

@@ -9,6 +9,7 @@ mod pd;
 mod real;
 pub mod reference;
 mod shaper;
+mod sliding_mode;
 mod state_feedback;
 mod two_dof;
 
@@ -19,5 +20,6 @@ pub use online_shaper::{OnlineShaper, memory_len};
 pub use pd::{Motors, Pd};
 pub use real::Real;
 pub use shaper::{Impulse, Mode, Shaped, Shaper, ShaperKind};
+pub use sliding_mode::{InputOutput, Outputs, SlidingMode, SlidingModeError, SlidingScratch};
 pub use state_feedback::StateFeedback;
 pub use two_dof::{TwoDof, TwoDofScratch};
