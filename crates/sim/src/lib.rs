@@ -26,6 +26,7 @@ pub mod reference;
 pub mod robot;
 pub mod scenario;
 pub mod simulate;
+pub mod walk;
 pub mod zeros;
 
 pub use dynamics::Dynamics;
