@@ -11,7 +11,7 @@ const GAIT: Gait = Gait {
     double_support: 0.1,
     clearance: 0.05,
     touchdown_speed: 0.03,
-    hip: HipPath { height: Some(0.43), rise: 0.03, surge: 0.015, lead: -0.01 },
+    hip: HipPath { height: Some(0.43), rise: 0.03, surge: 0.015, lead: -0.02 },
     trunk_pitch: 0.05,
     leg: LegLengths { thigh: 0.302, shank: 0.332 },
 };

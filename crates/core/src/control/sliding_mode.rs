@@ -164,7 +164,7 @@ impl<T: Real> SlidingMode<'_, T> {
         ];
         lengths.into_iter().try_for_each(|(name, given, expected)| SizeError::check(name, given, expected))?;
 
-        let (gram, asked) = matrix.split_at_mut(m * m);
+        let (gram, asked) = matrix.split_at_mut((m * m).min(matrix.len()));
         for i in 0..m {
             let (e, ed) = (at(measured.p, i) - at(desired.p, i), at(measured.pd, i) - at(desired.pd, i));
             let lambda = at(self.lambda, i);
