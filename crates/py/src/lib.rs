@@ -3,6 +3,7 @@
 mod analyze;
 mod arguments;
 mod arrays;
+mod constraint;
 mod derivatives;
 mod errors;
 mod inverse;
@@ -20,6 +21,8 @@ use pyo3::prelude::*;
 mod _gyroflex {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::constraint::{PyConstrainedMotion, PyConstraint, PyImpact};
     #[pymodule_export]
     use crate::inverse::PyElasticInverse;
     #[pymodule_export]

@@ -105,6 +105,6 @@ impl PyRobot {
 }
 
 /// Index of a velocity of a frame.
-fn direction(name: &str) -> PyResult<usize> {
+pub(crate) fn direction(name: &str) -> PyResult<usize> {
     arguments::choice("directions", name, &[("rx", 0), ("ry", 1), ("rz", 2), ("x", 3), ("y", 4), ("z", 5)])
 }

@@ -25,6 +25,10 @@ def main(path: Path) -> None:
     linear = robot.linearize(q, outputs="joint_torque")
     print(linear.zero_order_hold(1e-3).A.shape, [mode.frequency for mode in linear.modes() if mode.kind == "oscillation"])
     print(robot.frequency_response(robot.joint_names[0], q, points=10).resonances)
+    still = np.zeros(robot.nv)
+    tip = robot.link_names[-1]
+    hold = gyroflex.Constraint.frame(tip, at=robot.placement(tip, q), directions=["x", "z"])
+    print(robot.constrained_forward_dynamics(q, still, q, still, still, constraints=[hold]).multipliers)
     try:
         robot.placement("no such link", q)
     except gyroflex.ArgumentError as error:

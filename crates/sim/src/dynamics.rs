@@ -1,10 +1,12 @@
 //! A model together with the scratch its algorithms need: allocated once, nothing per call.
 
+mod constrained;
 mod derivatives;
 mod matrices;
 
 use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
+use constrained::ConstraintStorage;
 use gyroflex::dynamics::{
     self, AbaScratch, Acceleration, CrbaScratch, DerivativeScratch, Energy, External, Forward, ForwardScratch, Inverse,
     JointSpaceScratch, Power, RneaScratch, State,
@@ -27,6 +29,7 @@ pub struct Dynamics {
     derivative: Vec<DerivativeScratch<f64>>,
     derivative_matrix: Vec<f64>,
     operational: Vec<f64>,
+    held: ConstraintStorage,
 }
 
 impl Dynamics {
@@ -47,6 +50,7 @@ impl Dynamics {
             derivative: vec![DerivativeScratch::new(); n],
             derivative_matrix: vec![0.0; dynamics::derivative_matrix_len(&view)],
             operational: Vec::new(),
+            held: ConstraintStorage::default(),
             model,
         }
     }

@@ -10,7 +10,17 @@ link side of the gear.
 >>> qdd, thetadd = robot.forward_dynamics(q, still, theta, still, tau)
 """
 
-from ._gyroflex import ElasticInverse, FrequencyResponse, Linearization, Mode, Robot, __version__
+from ._gyroflex import (
+    ConstrainedMotion,
+    Constraint,
+    ElasticInverse,
+    FrequencyResponse,
+    Impact,
+    Linearization,
+    Mode,
+    Robot,
+    __version__,
+)
 from .errors import (
     ArgumentError,
     DivergedError,
@@ -27,12 +37,15 @@ from .simulation import SimulationResult, simulate
 
 __all__ = [
     "ArgumentError",
+    "ConstrainedMotion",
+    "Constraint",
     "DivergedError",
     "ElasticInverse",
     "Error",
     "FileError",
     "FormatError",
     "FrequencyResponse",
+    "Impact",
     "Linearization",
     "Mode",
     "ModelError",

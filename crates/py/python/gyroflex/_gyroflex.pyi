@@ -9,12 +9,25 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import DivergedError
 
-__all__ = ["ElasticInverse", "FrequencyResponse", "Linearization", "Mode", "Robot", "run_scenario", "__version__"]
+__all__ = [
+    "ConstrainedMotion",
+    "Constraint",
+    "ElasticInverse",
+    "FrequencyResponse",
+    "Impact",
+    "Linearization",
+    "Mode",
+    "Robot",
+    "run_scenario",
+    "__version__",
+]
 
 __version__: str
 
 _Model: TypeAlias = Literal["complete", "reduced", "rigid", "rigid_reflected"]
 _Friction: TypeAlias = Literal["all", "viscous", "none"]
+_Direction: TypeAlias = Literal["rx", "ry", "rz", "x", "y", "z"]
+_Point: TypeAlias = tuple[float, float, float]
 _Vector: TypeAlias = NDArray[np.float64]
 _Matrix: TypeAlias = NDArray[np.float64]
 _Blocks: TypeAlias = NDArray[np.float64]
@@ -179,6 +192,114 @@ class ElasticInverse:
         """Their rates before the step, shape `(nv,)`."""
 
 @final
+class Constraint:
+    """Something held: a frame of a link to the world or to another link, or a joint to another one."""
+
+    @staticmethod
+    def frame(
+        link: str,
+        *,
+        xyz: _Point = (0.0, 0.0, 0.0),
+        rpy: _Point = (0.0, 0.0, 0.0),
+        to: str | None = None,
+        at_xyz: _Point | None = None,
+        at_rpy: _Point | None = None,
+        at: ArrayLike | None = None,
+        directions: Literal["all", "point"] | Sequence[_Direction] | None = None,
+        stabilisation: float = 0.0,
+        contact: Literal["x", "y", "z"] | None = None,
+        restitution: float = 0.0,
+        slip: _Point | None = None,
+    ) -> Constraint:
+        """Holds a frame of a link at `at_xyz`, `at_rpy` or `at` of the world or of the link `to`, in whose axes the directions are."""
+
+    @staticmethod
+    def joints(
+        joint: str, follows: str, *, ratio: float = 1.0, offset: float = 0.0, stabilisation: float = 0.0
+    ) -> Constraint:
+        """Lets a joint follow another one: `q = ratio q_follows + offset`."""
+
+    @property
+    def rows(self) -> int:
+        """How many directions it constrains: as many multipliers it has."""
+
+@final
+class ConstrainedMotion:
+    """Accelerations of a robot with something held, and the forces of it."""
+
+    @property
+    def qdd(self) -> _Vector:
+        """Accelerations of the joints, shape `(nv,)`."""
+
+    @property
+    def thetadd(self) -> _Vector:
+        """Accelerations of the motors seen from the link side, shape `(nv,)`."""
+
+    @property
+    def tau_j(self) -> _Vector:
+        """Torques that the transmissions exert on the joints, shape `(nv,)` [N m or N]."""
+
+    @property
+    def multipliers(self) -> _Vector:
+        """Forces along the constrained directions, constraint by constraint [N or N m]."""
+
+    @property
+    def wrenches(self) -> _Matrix:
+        """Moment and force of each constraint on its link, about its frame's origin in world axes, shape `(constraints, 6)`."""
+
+    @property
+    def dependent(self) -> int:
+        """How many directions were left out because others say the same."""
+
+    @property
+    def contradiction(self) -> float:
+        """The largest acceleration that those ask for and do not get."""
+
+    @property
+    def independence(self) -> float:
+        """The smallest part of a direction's own mobility that the ones before it leave it, 0 to 1."""
+
+@final
+class Impact:
+    """Velocities after an impact, and the impulses of it."""
+
+    @property
+    def qd(self) -> _Vector:
+        """Velocities of the joints afterwards, shape `(nv,)`."""
+
+    @property
+    def thetad(self) -> _Vector:
+        """Velocities of the motors afterwards seen from the link side, shape `(nv,)`."""
+
+    @property
+    def gears(self) -> _Vector:
+        """Impulses that rigid gears exert on their joints, shape `(nv,)` [N m s or N s]."""
+
+    @property
+    def multipliers(self) -> _Vector:
+        """Impulses along the constrained directions, constraint by constraint [N s or N m s]."""
+
+    @property
+    def wrenches(self) -> _Matrix:
+        """Angular and linear impulse of each constraint on its link, as those of `ConstrainedMotion`."""
+
+    @property
+    def dependent(self) -> int:
+        """How many directions were left out because others say the same."""
+
+    @property
+    def contradiction(self) -> float:
+        """The largest jump of velocity that those ask for and do not get."""
+
+    @property
+    def independence(self) -> float:
+        """The smallest part of a direction's own mobility that the ones before it leave it, 0 to 1."""
+
+    @property
+    def released(self) -> int:
+        """How many contacts were released because they would have pulled."""
+
+@final
 class Robot:
     """A robot with its drives, loaded from files."""
 
@@ -332,13 +453,48 @@ class Robot:
         qd: ArrayLike,
         thetad: ArrayLike | None = None,
         *,
-        directions: list[Literal["rx", "ry", "rz", "x", "y", "z"]] | None = None,
+        directions: list[_Direction] | None = None,
         rotation: Literal["geometric", "rpy", "zyz"] = "geometric",
         point: tuple[float, float, float] | None = None,
         threshold: float = 1e-6,
         model: _Model | None = None,
     ) -> dict[str, Any]:
         """The dynamics that a link feels: Jacobian, inertia, consistent inverse, velocity and gravity forces, singular values."""
+
+    def constrained_forward_dynamics(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        theta: ArrayLike | None = None,
+        thetad: ArrayLike | None = None,
+        tau: ArrayLike | None = None,
+        *,
+        constraints: Sequence[Constraint],
+        model: _Model | None = None,
+        tau_ext: ArrayLike | None = None,
+        threshold: float = 1e-9,
+        damping: float = 0.0,
+    ) -> ConstrainedMotion:
+        """Accelerations of links and motors with something held, and the forces that hold it."""
+
+    def impact(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        thetad: ArrayLike | None = None,
+        *,
+        constraints: Sequence[Constraint],
+        release: bool = False,
+        model: _Model | None = None,
+        threshold: float = 1e-9,
+        damping: float = 0.0,
+    ) -> Impact:
+        """Velocities after everything in `constraints` is caught at once, and the impulses of it."""
+
+    def constraint_motion(
+        self, q: ArrayLike, qd: ArrayLike, *, constraints: Sequence[Constraint]
+    ) -> tuple[_Vector, _Vector, _Matrix]:
+        """Errors of position and of velocity of constraints, shape `(m,)`, and their Jacobian, shape `(m, nv)`."""
 
     def smoothness(
         self, model: _Model | None = None, torque_derivatives: int = 0, *, damping: float | None = None
