@@ -222,6 +222,8 @@ fn lowered(bodies: &[BodySpec], gravity: Vec3<f64>) -> Result<OwnedModel, Error>
         warnings: Vec::new(),
         sources: Vec::new(),
         payload: None,
+        contacts: Vec::new(),
+        held: Vec::new(),
     };
     robot.model(Fidelity::RigidReflected)
 }

@@ -99,6 +99,11 @@ impl Walker {
         (self.step, self.phase)
     }
 
+    /// Indices of [`PlanarGait::COORDINATES`] among the robot's.
+    pub fn coordinates(&self) -> [usize; 7] {
+        self.parts.v
+    }
+
     /// The gait.
     pub fn gait(&self) -> &PlanarGait {
         &self.gait
