@@ -36,11 +36,12 @@ impl Shape {
 
 /// A robot of `n` links. Neighbouring axes are at right angles, as those of most arms; a chain of seven is such an arm.
 pub fn generated(shape: Shape, n: usize) -> Spec {
-    let bodies = (0..n).map(|i| body(shape.parent(i), i)).collect();
+    let bodies = (0..n).map(|i| turning(shape.parent(i), i)).collect();
     Spec { bodies, spring_tables: Vec::new(), gravity: Vec3::new(0.0, 0.0, -9.81) }
 }
 
-fn body(parent: Option<usize>, i: usize) -> BodySpec {
+/// A link that turns on another one, number `i` of its robot.
+pub(crate) fn turning(parent: Option<usize>, i: usize) -> BodySpec {
     let bend = if i.is_multiple_of(2) { -FRAC_PI_2 } else { FRAC_PI_2 };
     let rotation = Mat3::from_rpy(if parent.is_some() { bend } else { 0.0 }, 0.0, 0.3 * (i % 4) as f64);
     let placement = Transform::from_pose(rotation, Vec3::new(0.05, 0.02, 0.15));

@@ -1,6 +1,7 @@
 //! Robots, states and calls shared by the benches and the instruction counts.
 
 mod generated;
+mod humanoid;
 mod lanes;
 pub mod peers;
 #[cfg(feature = "robots")]
@@ -8,6 +9,7 @@ mod robots;
 mod workload;
 
 pub use generated::{Shape, generated};
+pub use humanoid::{Standing, humanoid};
 pub use lanes::Lane;
 pub use peers::STATES;
 #[cfg(feature = "robots")]

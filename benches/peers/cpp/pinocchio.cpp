@@ -9,6 +9,7 @@
 #include <pinocchio/multibody/joint.hpp>
 #include <memory>
 #include "worker.hpp"
+#include "standing.hpp"
 
 namespace pin = pinocchio;
 using Eigen::Map;
@@ -175,6 +176,22 @@ int main(int argc, char** argv) {
       pin::forwardKinematics(r->model, r->data, r->q[size_t(k)]);
       used(r->data.oMi);
     });
+    if (Standing::has_feet(worker.folder, name)) {
+      auto standing = std::make_shared<Standing>(worker.folder, r->tree, r->model, r->q, r->u);
+      worker.add(name + "/constrained:constraintDynamics", TOLERANCE, [=](int k) {
+        standing->by_dense(k);
+        return standing->error(standing->dense, k);
+      }, [=](int k) { standing->by_dense(k); });
+      worker.add(name + "/constrained:pv", TOLERANCE, [=](int k) {
+        standing->by_pv(k);
+        return standing->error(standing->pv, k);
+      }, [=](int k) { standing->by_pv(k); });
+      // As near as its damping lets it come.
+      worker.add(name + "/constrained:constrainedABA", 1e-5, [=](int k) {
+        standing->by_aba(k);
+        return standing->error(standing->aba, k);
+      }, [=](int k) { standing->by_aba(k); });
+    }
     static std::vector<std::shared_ptr<Robot>> alive;  // the rows point into it
     alive.push_back(robot);
   }

@@ -8,6 +8,7 @@ Run by the Python of the environment that `run install` makes: `models.py FOLDER
   NAME.expected  256 × [accelerations for u, torques for a, M(q) a, 12 numbers a body for its pose], from Pinocchio's Python module
   NAME.derivatives  256 × [∂v̇/∂q a, ∂v̇/∂v a, ∂v̇/∂u u, ∂τ/∂q a, ∂τ/∂v a]: accelerations with the springs, torques without them
   NAME.still     accelerations of state 0 without torques and springs
+  NAME.feet and NAME.held of a robot that stands: see feet.py
 NAME_flex is the robot with a rotor on the previous link for every joint: a body of its own in these files, a drive in
 NAME_flex.yaml, which is what gyroflex reads. Coordinates run rotor, link, rotor, link, …
 """
@@ -15,6 +16,7 @@ NAME_flex.yaml, which is what gyroflex reads. Coordinates run rotor, link, rotor
 import sys
 from pathlib import Path
 
+import feet
 import numpy as np
 import pinocchio as pin
 from trees import GRAVITY, Body, Spring, mjcf, tree_text, urdf
@@ -26,6 +28,9 @@ LOCAL = pin.Convention.LOCAL
 # joints. The sizes are those of frameless motors in arms of 5 to 20 kg payload; times do not depend on them.
 ROTORS = [(0.9, 1.0e-4, 2.4e-4), (0.6, 5.0e-5, 1.5e-4), (0.3, 1.5e-5, 7.0e-5)]
 GEAR, STIFFNESS, DAMPING = 100.0, 1.0e4, 10.0  # rotor turns a joint turn, N m/rad, N m s/rad
+
+# Links that are held in constrained dynamics.
+FEET = {"talos": ["left_sole_link", "right_sole_link"]}
 
 
 def source(*parts):
@@ -66,7 +71,7 @@ def with_rotors(links):
             springs.append(Spring(q, v, q + 1, v + 1, GEAR, STIFFNESS, DAMPING))
         tree.append(link.moved_to(place[link.parent], link.mass, link.centre, link.inertia))
         place[i] = len(tree) - 1
-    return tree, springs
+    return tree, springs, place
 
 
 def drives(name, links):
@@ -137,13 +142,13 @@ def derivatives(model, data, state, spring, slopes):
     return np.concatenate([*forward, data.dtau_dq @ a, data.dtau_dv @ a])
 
 
-def write(folder, name, tree, springs):
+def write(folder, name, tree, springs, stands):
     model = pinocchio_model(tree)
     data = model.createData()
     floating = tree[0].joint == "floating"
     random = np.random.default_rng(model.nv)
     slopes = spring_slopes(springs, model.nv)
-    states, expected, slope, still = [], [], [], None
+    states, expected, slope, still, loads = [], [], [], None, []
     for _ in range(STATES):
         q, v, a, u = random_state(random, model, springs, floating)
         spring = spring_torques(springs, q, v)
@@ -156,10 +161,13 @@ def write(folder, name, tree, springs):
         if still is None:
             still = pin.aba(model, data, q, v, np.zeros(model.nv), LOCAL).copy()
         states.append(np.concatenate([q, v, a, u]))
+        loads.append((q, v, u))
         expected.append(np.concatenate([forward, inverse, momentum, poses]))
         slope.append(derivatives(model, data, (q, v, a, u), spring, slopes))
     for kind, numbers in [("states", states), ("expected", expected), ("derivatives", slope), ("still", still)]:
         np.asarray(numbers, "<f8").tofile(folder / f"{name}.{kind}")
+    if stands:
+        feet.write(folder, name, model, stands, loads, springs, spring_torques)
     (folder / f"{name}.tree").write_text(tree_text(tree, springs, model.nq, model.nv))
     (folder / f"{name}.urdf").write_text(urdf(name, tree))
     (folder / f"{name}.xml").write_text(mjcf(name, tree))
@@ -177,8 +185,10 @@ def main(folder):
     }
     for name, model in robots.items():
         links = bodies(model)
-        write(folder, name, links, [])
-        write(folder, f"{name}_flex", *with_rotors(links))
+        tree, springs, place = with_rotors(links)
+        stands = feet.feet_of(model, FEET.get(name, []))
+        write(folder, name, links, [], [(link, link, pose) for link, pose in stands])
+        write(folder, f"{name}_flex", tree, springs, [(link, place[link], pose) for link, pose in stands])
         without, with_ = drives(name, links)
         (folder / f"{name}.yaml").write_text(without)
         (folder / f"{name}_flex.yaml").write_text(with_)

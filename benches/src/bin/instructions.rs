@@ -4,8 +4,9 @@
 //! call it passes the mark, and then names the case.
 
 use gyroflex::Scalar;
+use gyroflex::dynamics::Directions;
 use gyroflex::model::Fidelity;
-use gyroflex_benches::{Algorithm, Shape, Spec, Workload, generated};
+use gyroflex_benches::{Algorithm, Shape, Spec, Standing, Workload, generated};
 use std::hint::black_box;
 use std::io::Write;
 
@@ -49,6 +50,20 @@ fn elastic_inverse<T: Scalar<Param = T> + 'static>(robot: &str, spec: &Spec, sca
     }
 }
 
+/// Counts forward dynamics of a humanoid on two feet.
+fn constrained<T: Scalar<Param = T> + 'static>(scalar: &str) {
+    for (name, held) in [("points", Directions::POINT), ("feet", Directions::ALL)] {
+        let mut standing = Standing::<T>::new(Fidelity::Complete, Some(held));
+        standing.call(0);
+        for i in 0..2 {
+            mark();
+            standing.call(i);
+            mark();
+            println!("humanoid30 constrained_{name} complete {scalar}");
+        }
+    }
+}
+
 fn main() -> std::io::Result<()> {
     println!("{:p}", mark as *const ());
     std::io::stdout().flush()?;
@@ -67,6 +82,7 @@ fn main() -> std::io::Result<()> {
         elastic_inverse::<f64>("arm7", &spec, "f64");
         elastic_inverse::<f32>("arm7", &spec, "f32");
     }
+    constrained::<f64>("f64");
     cases::<f64>("tree14", &generated(Shape::Tree, 14), Fidelity::Complete, "f64", 2);
     #[cfg(feature = "robots")]
     for fidelity in Fidelity::ALL {

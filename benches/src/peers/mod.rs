@@ -4,5 +4,5 @@
 mod tree;
 mod worker;
 
-pub use tree::{Body, STATES, Spring, Tree, add_springs, error};
+pub use tree::{Body, STATES, Spring, Tree, add_springs, error, numbers};
 pub use worker::Worker;

@@ -83,12 +83,8 @@ impl Tree {
         for s in &springs {
             gears[s.rotor_v] = s.gear;
         }
-        let numbers = |kind: &str| {
-            let bytes = read(folder, name, kind);
-            let words = bytes.chunks_exact(8);
-            words.map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]])).collect()
-        };
-        let [states, expected, derivatives, still] = ["states", "expected", "derivatives", "still"].map(numbers);
+        let [states, expected, derivatives, still] =
+            ["states", "expected", "derivatives", "still"].map(|kind| numbers(folder, name, kind));
         let name = name.to_owned();
         Self { name, nq, nv, gravity: head[4], bodies, springs, gears, still, states, expected, derivatives }
     }
@@ -162,6 +158,13 @@ pub fn error(got: impl ExactSizeIterator<Item = f64>, want: impl ExactSizeIterat
 fn read(folder: &Path, name: &str, kind: &str) -> Vec<u8> {
     let path = folder.join(format!("{name}.{kind}"));
     std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}; run the stage `models`", path.display()))
+}
+
+/// All numbers of a file of them.
+pub fn numbers(folder: &Path, name: &str, kind: &str) -> Vec<f64> {
+    let bytes = read(folder, name, kind);
+    let words = bytes.chunks_exact(8);
+    words.map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]])).collect()
 }
 
 fn number(word: &str) -> f64 {

@@ -3,6 +3,7 @@
 mod derivatives;
 mod links;
 mod robot;
+mod standing;
 
 use gyroflex::Lanes;
 use gyroflex_benches::Lane;
@@ -31,6 +32,7 @@ fn main() {
         let robot = add::<f64>(&mut worker, &name, "", TOLERANCE);
         worker.add(format!("{name}/crba"), TOLERANCE, &robot, Robot::matrix, Robot::matrix_error);
         derivatives::add(&mut worker, &name);
+        standing::add(&mut worker, &name, TOLERANCE);
         // The pose of a rotor is that of its mount, turned by its angle: nothing to compute.
         if robot.borrow().is_rigid() {
             worker.add(format!("{name}/fk"), TOLERANCE, &robot, Robot::poses, Robot::pose_error);

@@ -93,11 +93,8 @@ impl<T: Lane> Robot<T> {
     fn point(&self, k: usize) -> Point<f64> {
         let [q, v, a, u] = self.tree.state(k);
         let lead = self.tree.nq - self.tree.nv;
-        let of_links = |x: &[f64]| self.links.iter().map(|&i| x[i]).collect::<Vec<_>>();
-        // Motion of the rotors on the link side of their gears.
-        let of_rotors = |x: &[f64], shift: usize| {
-            self.rotors.iter().map(|r| r.map_or(0.0, |i| x[i + shift] / self.tree.gears[i])).collect()
-        };
+        let of_links = |x: &[f64]| self.of_links(x);
+        let of_rotors = |x: &[f64], shift: usize| self.of_rotors(x, shift);
         let joints = self.links.iter().skip(if lead > 0 { 6 } else { 0 }).map(|&i| q[i + lead]);
         let motors = of_links(u).into_iter().zip(&self.rotors);
         Point {
@@ -109,6 +106,20 @@ impl<T: Lane> Robot<T> {
             qdd: of_links(a),
             thetadd: of_rotors(a, 0),
         }
+    }
+
+    fn of_links(&self, x: &[f64]) -> Vec<f64> {
+        self.links.iter().map(|&i| x[i]).collect()
+    }
+
+    /// Motion of the rotors on the link side of their gears.
+    fn of_rotors(&self, x: &[f64], shift: usize) -> Vec<f64> {
+        self.rotors.iter().map(|r| r.map_or(0.0, |i| x[i + shift] / self.tree.gears[i])).collect()
+    }
+
+    /// Velocities of links and motors, from those of the tree.
+    pub fn velocities(&self, v: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        (self.of_links(v), self.of_rotors(v, 0))
     }
 
     /// Back to the tree's coordinates; `motion` of rotors grows through the gear, their torque shrinks.
