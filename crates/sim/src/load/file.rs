@@ -1,7 +1,7 @@
 //! What a robot YAML may contain: the drives that a URDF has no words for.
 
-use super::held::{ConstraintFile, ContactFile, CouplingFile};
 use super::PayloadFile;
+use super::held::{ConstraintFile, ContactFile, CouplingFile};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer};

@@ -150,7 +150,8 @@ impl HeldFiles<'_> {
             let key = format!("contacts.{name}");
             finite(keys, &key, &file.point)?;
             let link = find_link(robot, keys, &format!("{key}.link"), &file.link)?;
-            let (Some(body), point) = (robot.links[link].body, robot.links[link].placement.point(Vec3::from(file.point)))
+            let (Some(body), point) =
+                (robot.links[link].body, robot.links[link].placement.point(Vec3::from(file.point)))
             else {
                 let problem = format!("link `{}` does not move: it touches the ground always or never", file.link);
                 return Err(keys.error(&format!("{key}.link"), problem, "name a link that moves, or take it out"));
@@ -234,6 +235,10 @@ fn find_joint(robot: &Robot, keys: &Keys, key: &str, joint: &str) -> Result<usiz
     let found = robot.joints.iter().position(|j| j.name == *joint && j.urdf_type != "floating");
     found.ok_or_else(|| {
         let near = nearest(joint, robot.joints.iter().map(|j| j.name.as_str())).unwrap_or("none");
-        keys.error(key, format!("there is no joint `{joint}` of one degree of freedom"), format!("the nearest one is `{near}`"))
+        keys.error(
+            key,
+            format!("there is no joint `{joint}` of one degree of freedom"),
+            format!("the nearest one is `{near}`"),
+        )
     })
 }

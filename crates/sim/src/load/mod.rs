@@ -28,9 +28,7 @@ mod xml;
 pub mod yaml;
 
 pub use file::{Mimic, robot_schema};
-pub use held::{
-    AnchorFile, ConstraintFile, ContactFile, CouplingFile, Direction, DirectionsFile, DirectionsName,
-};
+pub use held::{AnchorFile, ConstraintFile, ContactFile, CouplingFile, Direction, DirectionsFile, DirectionsName};
 pub use payload::PayloadFile;
 pub use source::{Disk, Embedded, FileSource};
 

@@ -116,8 +116,8 @@ mod tests {
             warnings: Vec::new(),
             sources: sources.map(|(name, text)| SourceFile { name: name.to_owned(), text: text.to_owned() }).to_vec(),
             payload: None,
-        contacts: Vec::new(),
-        held: Vec::new(),
+            contacts: Vec::new(),
+            held: Vec::new(),
         }
     }
 

@@ -17,8 +17,8 @@ pub use integrator::Integrator;
 pub use plant::{Factors, Plant};
 pub use read::ScenarioFile;
 pub use reference::{JointReference, References, SineTerm};
-pub use walk::{Believes, Walk};
 pub use shaper::{InputShaper, ModesOf, Motors, ShaperMode, ShaperModes, ShaperType};
+pub use walk::{Believes, Walk};
 
 use crate::error::{Error, ErrorKind};
 use crate::load::yaml::Keys;

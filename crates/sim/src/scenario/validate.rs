@@ -30,7 +30,11 @@ impl Scenario {
             check.not_negative("ground.resting_speed", ground.resting_speed)?;
             if !(0.0..=1.0).contains(&ground.restitution) {
                 let problem = format!("{} is not between 0 and 1", ground.restitution);
-                return check.fail("ground.restitution", problem, "give 0 for a plastic impact, 1 for one that loses nothing");
+                return check.fail(
+                    "ground.restitution",
+                    problem,
+                    "give 0 for a plastic impact, 1 for one that loses nothing",
+                );
             }
         }
         check.integrator(&self.integrator)

@@ -107,7 +107,8 @@ impl Simulation {
         let mut contacts = Contacts::new(&robot, scenario.ground, &dynamics, &file.keys)?;
         if !contacts.is_empty() {
             if !matches!(scenario.integrator, Integrator::Rk4 { .. }) {
-                let problem = format!("`{}` cannot hold a robot by constraints or contacts", scenario.integrator.name());
+                let problem =
+                    format!("`{}` cannot hold a robot by constraints or contacts", scenario.integrator.name());
                 return Err(fault(&file.keys, "integrator.method", problem, "use `rk4`"));
             }
             let rest = vec![0.0; dynamics.nv()];

@@ -49,7 +49,16 @@ impl Walk {
         // Motors where their springs bear the weight would be better; they settle.
         let thetad = qd.clone();
         theta.copy_from_slice(&q);
-        Self { robot, dynamics, walker, t, x: [q, qd, theta, thetad], period: 1.0 / rate, parts, held: [Some([0.0, 0.0]), None] }
+        Self {
+            robot,
+            dynamics,
+            walker,
+            t,
+            x: [q, qd, theta, thetad],
+            period: 1.0 / rate,
+            parts,
+            held: [Some([0.0, 0.0]), None],
+        }
     }
 
     fn constraints(&self) -> Vec<Constraint<f64>> {
@@ -57,9 +66,14 @@ impl Walk {
         for side in 0..2 {
             let Some([x, z]) = self.held[side] else { continue };
             let frame = Frame { body: shank(side), placement: Transform { pos: FOOT, ..Transform::identity() } };
-            let anchor = Anchor { body: None, placement: Transform { pos: Vec3::new(x, 0.0, z), ..Transform::identity() } };
+            let anchor =
+                Anchor { body: None, placement: Transform { pos: Vec3::new(x, 0.0, z), ..Transform::identity() } };
             let hold = Hold::Frame { frame, anchor, directions: Directions::PLANAR_POINT };
-            out.push(Constraint { hold, stabilisation: 100.0, contact: Some(Contact { normal: 5, restitution: 0.0, slip: None }) });
+            out.push(Constraint {
+                hold,
+                stabilisation: 100.0,
+                contact: Some(Contact { normal: 5, restitution: 0.0, slip: None }),
+            });
         }
         out
     }
@@ -135,7 +149,13 @@ impl Walk {
             let mut which: Vec<usize> = (0..2).filter(|s| self.held[*s].is_some()).collect();
             let front = usize::from(self.walker.support() == Side::Right);
             for (i, s) in which.drain(..).enumerate() {
-                let k = if phase == 0 { 0 } else if s == front { 1 } else { 2 };
+                let k = if phase == 0 {
+                    0
+                } else if s == front {
+                    1
+                } else {
+                    2
+                };
                 let (fx, fz) = (forces[2 * i], forces[2 * i + 1]);
                 done.least_vertical[k] = done.least_vertical[k].min(fz);
                 done.friction[k] = done.friction[k].max((fx / fz).abs());
