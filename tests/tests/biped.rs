@@ -140,12 +140,12 @@ fn places(robot: &Robot, q: &[f64; 7], stance: Stance) -> Places {
 }
 
 /// Random coordinates of the robot.
-fn for_poses(robot: &Robot, law: impl Fn(&str, &Point, TrunkRooted, Stance)) {
+fn for_poses(name: &str, robot: &Robot, law: impl Fn(&str, &Point, TrunkRooted, Stance)) {
     for seed in 0..SEEDS {
         let s = random_point(&robot.bodies, &robot.spring_tables, seed);
         let q = TrunkRooted(s.q.as_slice().try_into().expect("seven coordinates"));
         for stance in Stance::BOTH {
-            law(&format!("{}, seed {seed}, {stance:?} stance", robot.name), &s, q, stance);
+            law(&format!("{name}, seed {seed}, {stance:?} stance"), &s, q, stance);
         }
     }
 }
@@ -154,7 +154,7 @@ fn for_poses(robot: &Robot, law: impl Fn(&str, &Point, TrunkRooted, Stance)) {
 fn tips_hip_and_centres_of_mass_are_where_equation_1_has_them_in_both_stances() {
     for name in ["biped5", "biped5_elastic"] {
         let robot = robot(name);
-        for_poses(&robot, |context, _, q, stance| {
+        for_poses(name, &robot, |context, _, q, stance| {
             let (got, theta) = (places(&robot, &q.0, stance), q.angles(stance));
             let [b, e] = got.tips;
             let seen = |what: &str, at: &Planar, want: [f64; 2]| {
@@ -178,7 +178,7 @@ fn tips_hip_and_centres_of_mass_are_where_equation_1_has_them_in_both_stances() 
 #[test]
 fn the_other_stance_is_the_paper_s_relabelling() {
     let robot = robot("biped5");
-    for_poses(&robot, |context, _, q, stance| {
+    for_poses("biped5", &robot, |context, _, q, stance| {
         let other = if stance == Stance::Left { Stance::Right } else { Stance::Left };
         let want = relabelled(&q.angles(stance));
         assert_close_above("angles", &context, q.angles(other).as_slice(), want.as_slice(), 1e-14, 1.0);
@@ -191,7 +191,7 @@ fn the_other_stance_is_the_paper_s_relabelling() {
 fn torques_of_the_robot_in_single_support_are_the_paper_s() {
     let robot = robot("biped5");
     let core = Core::<f64>::new(&robot.spec(), Fidelity::Complete);
-    for_poses(&robot, |context, s, q, stance| {
+    for_poses("biped5", &robot, |context, s, q, stance| {
         let seven = |x: &[f64]| TrunkRooted(x.try_into().expect("seven coordinates"));
         let (theta, rate, acceleration) = (q.angles(stance), seven(&s.qd).rates(stance), seven(&s.qdd).rates(stance));
         let moving = Point {
@@ -223,7 +223,7 @@ fn torques_of_the_robot_in_single_support_are_the_paper_s() {
 fn drives_leave_the_links_as_they_are() {
     let [ideal, elastic] = ["biped5", "biped5_elastic"].map(robot);
     let models = [(&ideal, Fidelity::Complete), (&elastic, Fidelity::Reduced)];
-    for_poses(&ideal, |context, s, _, _| {
+    for_poses("biped5_elastic", &ideal, |context, s, _, _| {
         let [want, got] = models.map(|(robot, model)| Core::<f64>::new(&robot.spec(), model).mass_matrix(s));
         assert_close("inertia matrix", &context, &got, &want, 1e-14);
     });
