@@ -14,7 +14,9 @@ fn robot(file: &str) -> Robot {
     load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-const ALL: [&str; 9] = [
+const ALL: [&str; 11] = [
+    "biped5/robot.yaml",
+    "biped5_elastic/robot.yaml",
     "iiwa14/robot.yaml",
     "iiwa14/lossless.yaml",
     "lwr/robot.yaml",

@@ -4,6 +4,7 @@ pub mod analyze;
 pub mod batch;
 pub mod bench;
 pub mod compare;
+pub mod contact;
 pub mod controller;
 pub mod coordinates;
 pub mod dynamics;

@@ -30,6 +30,8 @@ pub struct Loads {
     loads: Vec<Load>,
     wrenches: Vec<Force<f64>>,
     placements: Vec<Transform<f64>>,
+    /// Couples of the ground on bodies that a controller asks for: body, and the couple in world axes [N m].
+    couple: Option<(usize, Vec3<f64>)>,
 }
 
 impl Loads {
@@ -69,12 +71,29 @@ impl Loads {
             });
         }
         let bodies = if loads.is_empty() { 0 } else { robot.bodies.len() };
-        Ok(Self { loads, wrenches: vec![Force::zero(); bodies], placements: vec![Transform::identity(); bodies] })
+        let (wrenches, placements) = (vec![Force::zero(); bodies], vec![Transform::identity(); bodies]);
+        Ok(Self { loads, wrenches, placements, couple: None })
     }
 
     /// Whether there are none at all.
     pub fn is_empty(&self) -> bool {
-        self.loads.is_empty()
+        self.loads.is_empty() && self.couple.is_none()
+    }
+
+    /// A couple on a body in world axes [N m], in place of the one before; of a robot with so many bodies.
+    pub fn set_couple(&mut self, couple: Option<(usize, Vec3<f64>)>, bodies: usize) {
+        self.couple = couple;
+        if couple.is_some() {
+            self.wrenches.resize(bodies, Force::zero());
+            self.placements.resize(bodies, Transform::identity());
+        } else if self.loads.is_empty() {
+            self.wrenches.clear();
+        }
+    }
+
+    /// That couple [N m], zero without one.
+    pub fn couple(&self) -> Vec3<f64> {
+        self.couple.map_or(Vec3::zero(), |(_, couple)| couple)
     }
 
     /// Times at which a wrench starts or ends [s].
@@ -94,11 +113,14 @@ impl Loads {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn update(&mut self, dynamics: &Dynamics, q: &[f64]) -> Result<(), Error> {
-        if self.loads.is_empty() {
+        if self.is_empty() {
             return Ok(());
         }
         dynamics.placements(q, &mut self.placements)?;
         self.wrenches.fill(Force::zero());
+        if let Some((body, couple)) = self.couple {
+            self.wrenches[body] += Force::couple(self.placements[body].rot * couple);
+        }
         for load in self.loads.iter().filter(|l| l.active) {
             let turn = |v: Vec3<f64>| match load.frame {
                 WrenchFrame::World => self.placements[load.body].rot * v,

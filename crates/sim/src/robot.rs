@@ -1,6 +1,7 @@
 //! A robot as loaded from files: the description in the user's frames, names, frames, and where every number came from.
 
 use crate::error::{Error, Warning};
+use gyroflex::dynamics::Hold;
 use gyroflex::model::{Body, BodySpec, Fidelity, Knot, Model, RobotSpec};
 use gyroflex::spatial::{SpatialInertia, Transform, Vec3};
 
@@ -29,6 +30,32 @@ pub struct Robot {
     pub sources: Vec<SourceFile>,
     /// The load it carries; the inertia of its body contains it.
     pub payload: Option<Payload>,
+    /// Points that may touch the ground.
+    pub contacts: Vec<ContactPoint>,
+    /// What is held beside the joints, all the time.
+    pub held: Vec<HeldPart>,
+}
+
+/// A point that may touch the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// Its name.
+    pub name: String,
+    /// Index of the body that it is on.
+    pub body: usize,
+    /// Where it is, in the body's link frame [m].
+    pub point: Vec3<f64>,
+}
+
+/// A constraint that is always in force.
+#[derive(Clone, Debug)]
+pub struct HeldPart {
+    /// Its name.
+    pub name: String,
+    /// What is held to what.
+    pub hold: Hold<f64>,
+    /// How fast errors are drawn back, critically damped [rad/s].
+    pub stabilisation: f64,
 }
 
 /// A load fixed to a robot.

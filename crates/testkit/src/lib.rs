@@ -3,6 +3,7 @@
 //!
 //! Nothing here is published, and nothing here is fast on purpose.
 
+pub mod biped;
 pub mod dense;
 pub mod dual;
 pub mod energy_oracle;
@@ -12,6 +13,7 @@ pub mod reference;
 pub mod state;
 pub mod tolerance;
 
+pub use biped::Biped;
 pub use dual::Dual;
 pub use energy_oracle::EnergyOracle;
 pub use lowered::Lowered;

@@ -4,6 +4,7 @@
 
 use crate::arm::N;
 use crate::elastic::Elastic;
+use crate::held::Held;
 use crate::random::Point;
 use crate::scratch::{Accelerations, Scratch, Torques, forward, inverse, mass_matrix};
 use gyroflex::dynamics::{
@@ -192,6 +193,21 @@ pub fn elastic_inverse_is_rnea(
     inverse(model, state, accel, &[], scratch, &mut torques).ok()?;
     let tau_j = difference(&elastic.tau_j, &torques.tau_j) / norm(&torques.tau_j);
     Some(worse(tau_j, difference(&elastic.tau, &torques.tau) / norm(&torques.tau)))
+}
+
+/// Accelerations of the arm with its tip held against those of the arm with the tip's force on its last link.
+pub fn held_is_pushed(model: &Model<f32>, p: &Point, scratch: &mut Scratch, held: &mut Held) -> Option<f32> {
+    held.accelerate(model, p).ok()?;
+    let mut poses = [Transform::identity(); N];
+    placements(model, &p.q, &mut poses).ok()?;
+    let tip = Frame { body: N - 1, placement: Transform::identity() };
+    let mut columns = [0.0; 6 * N];
+    jacobian(model, &poses, tip, Axes::World, &mut columns).ok()?;
+    let force = held.wrench[0].lin.to_array();
+    let on_links: V = core::array::from_fn(|k| (0..3).map(|i| columns[(3 + i) * N + k] * force[i]).sum());
+    let mut pushed = Accelerations::default();
+    forward(model, p.state(), &p.tau, &on_links, scratch, &mut pushed).ok()?;
+    Some(difference(&held.links, &pushed.qdd) / norm(&pushed.qdd))
 }
 
 /// Largest absolute entry; NaN if any is.

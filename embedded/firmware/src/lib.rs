@@ -5,6 +5,7 @@
 pub mod arm;
 pub mod controller;
 pub mod elastic;
+pub mod held;
 pub mod laws;
 pub mod observer;
 pub mod orders;

@@ -25,6 +25,7 @@ fn main() -> ! {
     report::counts(&board, SEED, &mut verdict);
     report::laws(SEED, &mut verdict);
     report::elastic_law(SEED, &mut verdict);
+    report::held_law(SEED, &mut verdict);
     hprintln!("{}", if verdict.held() { "held" } else { "FAILED" });
     board::end(verdict.held())
 }

@@ -10,7 +10,8 @@ use gyroflex::model::Model;
 use gyroflex::spatial::Transform;
 use gyroflex_firmware::arm::{N, complete, rigid};
 use gyroflex_firmware::elastic::Elastic;
-use gyroflex_firmware::laws::{LAWS, elastic_inverse_is_rnea, worse};
+use gyroflex_firmware::held::Held;
+use gyroflex_firmware::laws::{LAWS, elastic_inverse_is_rnea, held_is_pushed, worse};
 use gyroflex_firmware::random::{Dice, Point};
 use gyroflex_firmware::scratch::{Accelerations, Scratch, Torques, forward, inverse, mass_matrix};
 
@@ -81,6 +82,19 @@ pub fn elastic_law(seed: u32, verdict: &mut Verdict) {
     );
 }
 
+/// The arm with its tip held moves as the arm that the tip's force pushes.
+pub fn held_law(seed: u32, verdict: &mut Verdict) {
+    let (mut dice, mut scratch, mut held) = (Dice::new(seed), Scratch::new(), Held::new());
+    let mut worst = 0.0;
+    for _ in 0..STATES {
+        let point = Point::random(&mut dice);
+        let error = held_is_pushed(&complete::MODEL, &point, &mut scratch, &mut held);
+        worst = worse(worst, error.unwrap_or(f32::NAN));
+    }
+    let mark = verdict.at_most(worst, 1e-2);
+    hprintln!("law {:<9} {:<36} {:8.1e} of {:.0e}{}", "complete", "tip held and tip pushed", worst, 1e-2, mark);
+}
+
 /// Instructions of every algorithm, at random states.
 pub fn counts(board: &Board, seed: u32, verdict: &mut Verdict) {
     let (complete, rigid) = (black_box(&complete::MODEL), black_box(&rigid::MODEL));
@@ -107,7 +121,11 @@ pub fn counts(board: &Board, seed: u32, verdict: &mut Verdict) {
     count("placements", &mut |p| placements(complete, &p.q, &mut poses).is_ok());
     let mut elastic = Elastic::new();
     count("elastic_inverse6", &mut |p| elastic.invert(complete, p).is_ok());
-    let _ = black_box((elastic, torques, moved, matrix, poses));
+    let mut held = Held::new();
+    count("held_forward", &mut |p| held.accelerate(complete, p).is_ok());
+    count("held_impact", &mut |p| held.catch(complete, p).is_ok());
+    count("held_inverse", &mut |p| held.drive(complete, p).is_ok());
+    let _ = black_box((elastic, held, torques, moved, matrix, poses));
 }
 
 /// The 1 kHz loop.

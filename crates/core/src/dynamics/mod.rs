@@ -38,8 +38,9 @@ pub use at_base::DerivativeScratch;
 pub use constraint::{
     Anchor, Constrained, ConstrainedScratch, Constraint, ConstraintError, ConstraintMotion, ConstraintScratch, Contact,
     Directions, Hold, Impact, PropagatedScratch, Regularisation, Solved, SupportScratch, TorqueDistribution,
-    constrained_forward_dynamics, constrained_inverse_dynamics, constrained_inverse_len, constrained_joint_matrix_len,
-    constraint_matrix_len, constraint_motion, constraint_rows, impact, propagated_len,
+    constrained_aba, constrained_forward_dynamics, constrained_inverse_dynamics, constrained_inverse_len,
+    constrained_joint_matrix_len, constraint_matrix_len, constraint_motion, constraint_rows, impact, impact_aba,
+    propagated_len,
 };
 pub use coriolis::{Bias, CoriolisMatrices, InertiaRates, bias, coriolis_matrices, gravity_torques, inertia_rates};
 pub use crba::{CrbaScratch, coupling, crba, reflected_inertia};

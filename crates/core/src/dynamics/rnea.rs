@@ -149,8 +149,8 @@ impl<T: Scalar> Rnea<'_, '_, T> {
 
             // f = m a + α × h + ω × (ω × h) − f_ext,   n = I α + ω × I ω + h × a − n_ext
             let mut f = moving.force_on(field, &body.inertia);
-            if let Some(wrenches) = wrenches {
-                f -= body.frame.map(F::from_param).inv_force(wrenches[i].map(F::load));
+            if let Some(wrench) = wrenches.and_then(|wrenches| wrenches.get(i)) {
+                f -= body.frame.map(F::from_param).inv_force(wrench.map(F::load));
             }
             scratch[i].f = f.map(F::store);
 

@@ -3,7 +3,9 @@
 mod inverse;
 mod linearization;
 mod lqr;
+mod walking;
 
+use crate::contact::Event;
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
 use crate::equilibrium::Equilibrium;
@@ -15,9 +17,11 @@ use crate::scenario::{Controller, Gains, RigidModel, fault};
 use gyroflex::control::{ComputedTorque, Joints, Motors, Pd};
 use gyroflex::dynamics::{External, RneaScratch, State};
 use gyroflex::model::Fidelity;
+use gyroflex::spatial::Vec3;
 use inverse::Feedforward;
 use linearization::Linearization;
 use lqr::Lqr;
+pub use walking::Walking;
 
 /// A controller and what it remembers.
 #[derive(Clone, Debug)]
@@ -48,6 +52,7 @@ enum Law {
     TwoDegreeOfFreedom(Box<Feedforward>),
     Lqr(Box<Lqr>),
     FeedbackLinearization(Box<Linearization>),
+    Walk(Box<Walking>),
 }
 
 /// An instant of control: what is asked for.
@@ -111,6 +116,9 @@ impl Control {
                 law.check(references, joints, keys)?;
                 (Law::FeedbackLinearization(Box::new(law)), vec![0.0; n], vec![0.0; n])
             }
+            Controller::Walk(walk) => {
+                (Law::Walk(Box::new(Walking::new(walk, robot, keys)?)), vec![0.0; n], vec![0.0; n])
+            }
         };
         let root = if joints.floating { (7, 6) } else { (0, 0) };
         let (nq, nv) = (root.0 + n, root.1 + n);
@@ -161,7 +169,8 @@ impl Control {
         }
         let measured = Motors { theta: state.theta, thetad: state.thetad };
         match &mut self.law {
-            Law::None => return Ok(()),
+            // The walk needs to know of its feet: see `walk`.
+            Law::None | Law::Walk(_) => return Ok(()),
             Law::Pd { gravity_compensation } => {
                 for (i, (joint, point)) in self.joints.joints.iter().zip(at.points).enumerate() {
                     let k = joint.v;
@@ -194,6 +203,33 @@ impl Control {
         Ok(())
     }
 
+    /// The walk, where that is the law.
+    pub fn walking(&mut self) -> Option<&mut Walking> {
+        match &mut self.law {
+            Law::Walk(walking) => Some(walking),
+            _ => None,
+        }
+    }
+
+    /// A tick of a walk, which hears of its feet: motor torques, and the couple that it asks of the ground, with the body that feels it; `None`
+    /// if the law is another.
+    ///
+    /// # Errors
+    /// A biped that has fallen.
+    pub fn walk(
+        &mut self,
+        t: f64,
+        events: &[Event],
+        state: State<f64>,
+        tau: &mut [f64],
+    ) -> Result<Option<(usize, Vec3<f64>)>, Error> {
+        let Some(walking) = self.walking() else { return Ok(None) };
+        walking.hear(events);
+        let couple = walking.tick(t, state, tau)?;
+        self.limit(tau);
+        Ok(Some(couple))
+    }
+
     /// Static motor positions and torques at the reference, into `theta` and `feed_forward`.
     fn hold_reference(&mut self, dynamics: &mut Dynamics, reference: &[Point], state: State<f64>) -> Result<(), Error> {
         if self.joints.floating {
@@ -221,6 +257,9 @@ impl Control {
 
     /// Forgets all ticks so far.
     pub fn reset(&mut self) {
+        if let Some(walking) = self.walking() {
+            walking.reset();
+        }
         self.ticks = 0;
         self.saturated.fill(0);
         self.peak.fill(0.0);
@@ -245,7 +284,7 @@ impl Control {
     /// a controller. A sampled loop is unstable once this exceeds twice its rate.
     pub fn damping_rate(&self, joint: usize, inertia: f64) -> f64 {
         match self.law {
-            Law::None | Law::Lqr(_) | Law::FeedbackLinearization(_) => 0.0,
+            Law::None | Law::Lqr(_) | Law::FeedbackLinearization(_) | Law::Walk(_) => 0.0,
             Law::Pd { .. } | Law::TwoDegreeOfFreedom(_) => self.kd[joint] / inertia,
             Law::ComputedTorque { .. } => self.kd[joint],
         }

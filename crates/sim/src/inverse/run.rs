@@ -214,7 +214,7 @@ impl InverseRun {
             theta: along.theta().to_vec(),
             thetad: along.thetad().to_vec(),
         };
-        self.sampler.take(t, &mut self.dynamics, state.view(), along.tau(), loads, points)
+        self.sampler.take(t, &mut self.dynamics, state.view(), along.tau(), loads, None, points)
     }
 
     fn empty_summary(&self) -> InverseSummary {

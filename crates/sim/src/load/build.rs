@@ -4,6 +4,7 @@ use super::dialects::{Tags, TagsByJoint};
 use super::drives;
 use super::file::{DriveFile, RobotFile};
 use super::fuse::{Bodies, fuse};
+use super::held::HeldFiles;
 use super::merge::Merge;
 use super::mount::Places;
 use super::nearest::nearest;
@@ -70,7 +71,13 @@ pub(crate) fn build(
         warnings,
         sources: Vec::new(),
         payload: None,
+        contacts: Vec::new(),
+        held: Vec::new(),
     };
+    if let Some(yaml) = yaml {
+        let RobotFile { contacts, constraints, couplings, .. } = &yaml.value;
+        HeldFiles { contacts, constraints, couplings }.put_on(&mut robot, &yaml.keys)?;
+    }
     if let Some((yaml, payload)) = yaml.and_then(|y| Some((y, y.value.payload.as_ref()?))) {
         payload.put_on(&mut robot, &yaml.keys, "payload")?;
     }

@@ -1,5 +1,6 @@
 //! What a robot YAML may contain: the drives that a URDF has no words for.
 
+use super::held::{ConstraintFile, ContactFile, CouplingFile};
 use super::PayloadFile;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
@@ -29,6 +30,15 @@ pub struct RobotFile {
     /// A load fixed to a link, added to what the URDF says; default: none.
     #[serde(default)]
     pub payload: Option<PayloadFile>,
+    /// Points of links that may touch the ground, by name; a scenario's `ground` makes use of them.
+    #[serde(default)]
+    pub contacts: BTreeMap<String, ContactFile>,
+    /// Frames held to the world or to other links all the time, by name: loops, which the URDF's tree cannot have.
+    #[serde(default)]
+    pub constraints: BTreeMap<String, ConstraintFile>,
+    /// Joints that follow other joints, by name.
+    #[serde(default)]
+    pub couplings: BTreeMap<String, CouplingFile>,
     /// The drives by joint name. Joints without an entry have what the URDF itself says.
     #[serde(default)]
     pub drives: BTreeMap<String, DriveFile>,

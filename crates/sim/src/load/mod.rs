@@ -11,6 +11,7 @@ mod dialects;
 mod drives;
 pub mod file;
 mod fuse;
+mod held;
 mod ignored;
 mod inertial;
 mod merge;
@@ -27,6 +28,9 @@ mod xml;
 pub mod yaml;
 
 pub use file::{Mimic, robot_schema};
+pub use held::{
+    AnchorFile, ConstraintFile, ContactFile, CouplingFile, Direction, DirectionsFile, DirectionsName,
+};
 pub use payload::PayloadFile;
 pub use source::{Disk, Embedded, FileSource};
 

@@ -6,6 +6,8 @@
 //! | one a joint, grouped by quantity | `<quantity>.<joint>`, quantities as in [`Sample`]: `q`, `qd`, …, `tracking_error` |
 //! | one a run | `kinetic_energy`, `gravity_energy`, `elastic_energy`, `power_in`, `dissipation`, `significance` |
 //! | floating root, in the world; twist in its own frame | `base.x y z qx qy qz qw`, `base.wx wy wz vx vy vz` |
+//! | each contact point, where there is ground | `contact.<point>.fx fy fz gap mode` |
+//! | whole robot, where something holds it | `center_of_mass.x y z`, `zero_moment_point.x y`, `constraint_drift` |
 //! | pose of each link in its parent link | `frame.<link>.x y z qx qy qz qw` |
 
 use super::quaternion::quaternion;
@@ -82,6 +84,16 @@ const POSE: [(&str, &str); 7] =
 const TWIST: [(&str, &str); 6] =
     [("wx", "rad/s"), ("wy", "rad/s"), ("wz", "rad/s"), ("vx", "m/s"), ("vy", "m/s"), ("vz", "m/s")];
 
+const TOUCH: [(&str, &str); 5] = [("fx", "N"), ("fy", "N"), ("fz", "N"), ("gap", "m"), ("mode", "-")];
+const FOOTING: [(&str, &str); 6] = [
+    ("center_of_mass.x", "m"),
+    ("center_of_mass.y", "m"),
+    ("center_of_mass.z", "m"),
+    ("zero_moment_point.x", "m"),
+    ("zero_moment_point.y", "m"),
+    ("constraint_drift", "-"),
+];
+
 /// The columns of a run, in the order of every record.
 pub fn columns(info: &RunInfo) -> Vec<Column> {
     let mut columns = vec![Column { name: "time".to_owned(), unit: "s" }];
@@ -97,6 +109,16 @@ pub fn columns(info: &RunInfo) -> Vec<Column> {
     if info.floating {
         for (key, unit) in POSE.into_iter().chain(TWIST) {
             push(format!("base.{key}"), unit);
+        }
+    }
+    if info.held {
+        for contact in &info.contacts {
+            for (key, unit) in TOUCH {
+                push(format!("contact.{contact}.{key}"), unit);
+            }
+        }
+        for (key, unit) in FOOTING {
+            push(key.to_owned(), unit);
         }
     }
     for (link, _) in &info.frames {
@@ -116,6 +138,7 @@ pub(super) fn row(sample: &Sample, row: &mut Vec<f64>) {
     row.extend(WHOLE.iter().map(|w| (w.get)(sample)));
     row.extend(sample.base_pose.into_iter().flatten());
     row.extend(sample.base_twist.into_iter().flatten());
+    row.extend(sample.footing.iter().flat_map(|footing| footing.numbers()));
     for frame in &sample.frames {
         row.extend([frame.pos.x, frame.pos.y, frame.pos.z]);
         row.extend(quaternion(frame.rotation()));

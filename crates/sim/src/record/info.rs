@@ -20,6 +20,10 @@ pub struct RunInfo {
     pub frames: Vec<(String, String)>,
     /// Whether the robot has a floating root.
     pub floating: bool,
+    /// Whether something beside its joints may hold the robot.
+    pub held: bool,
+    /// Names of the points that the ground may hold.
+    pub contacts: Vec<String>,
     /// The robot's URDF, for `/robot_description`.
     pub urdf: String,
     /// Files to attach: name and content.
@@ -112,6 +116,8 @@ mod tests {
             warnings: Vec::new(),
             sources: sources.map(|(name, text)| SourceFile { name: name.to_owned(), text: text.to_owned() }).to_vec(),
             payload: None,
+        contacts: Vec::new(),
+        held: Vec::new(),
         }
     }
 

@@ -23,7 +23,7 @@ pub use self::info::RunInfo;
 pub use self::mcap::{ChunkLimits, McapRecorder};
 pub use self::memory::MemoryRecorder;
 pub use self::read::{StateLog, read_states};
-pub use self::sample::Sample;
+pub use self::sample::{Footing, Sample, Touch};
 pub use self::tee::TeeRecorder;
 
 use crate::error::Error;

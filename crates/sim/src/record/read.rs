@@ -70,6 +70,8 @@ fn run_info(state: &State) -> RunInfo {
         joints: state.joints.iter().map(|j| j.name.clone()).collect(),
         prismatic: state.joints.iter().map(|j| j.prismatic).collect(),
         floating: state.base.is_some(),
+        held: state.footing.is_some(),
+        contacts: state.footing.as_ref().map_or_else(Vec::new, |footing| footing.names()),
         ..RunInfo::default()
     }
 }

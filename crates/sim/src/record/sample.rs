@@ -54,6 +54,41 @@ pub struct Sample {
     pub significance: f64,
     /// Pose of every link frame relative to its parent frame, in the order of [`RunInfo::frames`].
     pub frames: Vec<Transform<f64>>,
+    /// What holds the robot; only where something beside its joints does.
+    pub footing: Option<Footing>,
+}
+
+/// What holds a robot beside its joints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Footing {
+    /// One entry per contact point, in the order of [`RunInfo::contacts`].
+    pub contacts: Vec<Touch>,
+    /// Centre of mass of the whole robot in the world [m].
+    pub center_of_mass: [f64; 3],
+    /// Point of the ground about which its forces have no moment along the ground, ahead and to the left [m]; below the centre of mass where
+    /// the ground carries nothing.
+    pub zero_moment_point: [f64; 2],
+    /// Largest error of position of all that is held so far [m or rad].
+    pub drift: f64,
+}
+
+/// One contact point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Touch {
+    /// Force of the ground on it, world axes [N].
+    pub force: [f64; 3],
+    /// Height above the ground [m].
+    pub gap: f64,
+    /// 0 off the ground, 1 held by it, 2 slipping on it.
+    pub mode: f64,
+}
+
+impl Footing {
+    /// All its numbers in the order of the columns.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
+        let contacts = self.contacts.iter().flat_map(|c| c.force.into_iter().chain([c.gap, c.mode]));
+        contacts.chain(self.center_of_mass).chain(self.zero_moment_point).chain([self.drift])
+    }
 }
 
 /// ROS 2 counts seconds in an `int32`.
@@ -90,6 +125,13 @@ impl Sample {
         }
         self.finite(format_args!("pose of the floating root"), &self.base_pose.unwrap_or_default())?;
         self.finite(format_args!("twist of the floating root"), &self.base_twist.unwrap_or_default())?;
+        let footing = self.footing.as_ref();
+        if footing.is_some() != info.held || footing.is_some_and(|f| f.contacts.len() != info.contacts.len()) {
+            return Err(shape("contacts", "a robot that something holds, and no other, has them all".to_owned()));
+        }
+        if let Some(footing) = footing {
+            self.finite(format_args!("what holds the robot"), &footing.numbers().collect::<Vec<_>>())?;
+        }
         if self.frames.len() != info.frames.len() {
             return Err(shape("frames", format!("{} poses for {} links", self.frames.len(), info.frames.len())));
         }

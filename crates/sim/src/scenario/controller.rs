@@ -1,6 +1,6 @@
 //! Controllers as a scenario names them.
 
-use super::ModelName;
+use super::{ModelName, Walk};
 use crate::zeros::InverseOutput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -75,6 +75,8 @@ pub enum Controller {
         /// Bandwidths of the closed loops [rad/s].
         bandwidth: Gains,
     },
+    /// The walk of a planar biped.
+    Walk(Box<Walk>),
 }
 
 /// The deviations that a linear-quadratic regulator weighs against each other, by Bryson's rule: each costs as much as the others when it is
@@ -126,6 +128,7 @@ impl Controller {
             Self::TwoDegreeOfFreedom { .. } => "two_degree_of_freedom",
             Self::Lqr { .. } => "lqr",
             Self::FeedbackLinearization { .. } => "feedback_linearization",
+            Self::Walk(_) => "walk",
         }
     }
 
@@ -138,6 +141,7 @@ impl Controller {
             | Self::TwoDegreeOfFreedom { rate, .. }
             | Self::Lqr { rate, .. }
             | Self::FeedbackLinearization { rate, .. } => Some(*rate),
+            Self::Walk(walk) => Some(walk.rate),
         }
     }
 }

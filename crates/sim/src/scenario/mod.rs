@@ -1,6 +1,7 @@
 //! The scenario file: which robot, from where, following what, driven how, for how long.
 
 mod controller;
+mod ground;
 mod integrator;
 mod motion;
 mod plant;
@@ -8,12 +9,15 @@ mod read;
 mod reference;
 mod shaper;
 mod validate;
+mod walk;
 
 pub use controller::{Controller, Gains, InverseOf, LqrDeviations, RigidModel};
+pub use ground::Ground;
 pub use integrator::Integrator;
 pub use plant::{Factors, Plant};
 pub use read::ScenarioFile;
 pub use reference::{JointReference, References, SineTerm};
+pub use walk::{Believes, Walk};
 pub use shaper::{InputShaper, ModesOf, Motors, ShaperMode, ShaperModes, ShaperType};
 
 use crate::error::{Error, ErrorKind};
@@ -53,6 +57,9 @@ pub struct Scenario {
     /// What the simulated robot has that its controller does not know; default: nothing, both are the robot of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plant: Option<Plant>,
+    /// The ground, which the robot's contact points may touch; default: there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground: Option<Ground>,
     /// External loads on links.
     #[serde(default)]
     pub wrenches: Vec<Wrench>,
@@ -134,6 +141,16 @@ pub enum JointValues {
     Named(BTreeMap<String, f64>),
     /// In coordinate order.
     Ordered(Vec<f64>),
+}
+
+impl JointValues {
+    /// Whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Named(map) => map.is_empty(),
+            Self::Ordered(list) => list.is_empty(),
+        }
+    }
 }
 
 impl Default for JointValues {

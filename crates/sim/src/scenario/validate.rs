@@ -24,6 +24,15 @@ impl Scenario {
         for (i, wrench) in self.wrenches.iter().enumerate() {
             check.wrench(&format!("wrenches[{i}]"), wrench)?;
         }
+        if let Some(ground) = &self.ground {
+            check.finite("ground.height", [&ground.height])?;
+            check.not_negative("ground.friction", ground.friction)?;
+            check.not_negative("ground.resting_speed", ground.resting_speed)?;
+            if !(0.0..=1.0).contains(&ground.restitution) {
+                let problem = format!("{} is not between 0 and 1", ground.restitution);
+                return check.fail("ground.restitution", problem, "give 0 for a plastic impact, 1 for one that loses nothing");
+            }
+        }
         check.integrator(&self.integrator)
     }
 }
@@ -111,6 +120,20 @@ impl Check<'_> {
             Controller::FeedbackLinearization { rate, bandwidth } => {
                 self.positive("controller.rate", *rate)?;
                 self.gains("controller.bandwidth", bandwidth)
+            }
+            Controller::Walk(walk) => {
+                self.positive("controller.rate", walk.rate)?;
+                self.positive("controller.believes.mass", walk.believes.mass)?;
+                self.positive("controller.believes.length", walk.believes.length)?;
+                self.not_negative("controller.damping", walk.damping)?;
+                self.finite("controller.rear_share", &walk.rear_share)?;
+                for (key, law) in [("single", walk.single), ("double", walk.double)] {
+                    self.positive(&format!("controller.{key}.lambda"), law.lambda)?;
+                    self.positive(&format!("controller.{key}.alpha"), law.alpha)?;
+                    self.not_negative(&format!("controller.{key}.sigma"), law.sigma)?;
+                    self.not_negative(&format!("controller.{key}.eta"), law.eta)?;
+                }
+                Ok(())
             }
         }
     }

@@ -11,6 +11,7 @@ mod summary;
 pub use start::StateVec;
 pub use summary::{JointSummary, Summary};
 
+use crate::contact::{Contacts, Event};
 use crate::controller::Control;
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
@@ -21,7 +22,7 @@ use crate::ode::Adaptive;
 use crate::record::RunInfo;
 use crate::reference::{Point, References};
 use crate::robot::Robot;
-use crate::scenario::{Integrator, ScenarioFile};
+use crate::scenario::{Integrator, JointValues, ScenarioFile, fault};
 use gyroflex::spatial::Vec3;
 pub(crate) use sampler::Sampler;
 
@@ -38,6 +39,7 @@ pub struct Simulation {
     points: Vec<Point>,
     control: Control,
     loads: Loads,
+    contacts: Contacts,
     sampler: Sampler,
     adaptive: Option<Adaptive>,
     modes: Modes,
@@ -91,7 +93,26 @@ impl Simulation {
         let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
         let mut loads = Loads::new(&scenario.wrenches, &robot, &file.keys)?;
         let motors = control.start(&references)?;
-        let initial = start::initial_state(file, &joints, &references, motors, &mut dynamics, &mut loads)?;
+        let mut initial = start::initial_state(file, &joints, &references, motors, &mut dynamics, &mut loads)?;
+        if let Some(walking) = control.walking() {
+            let given = [&scenario.initial.q, &scenario.initial.qd, &scenario.initial.theta, &scenario.initial.thetad];
+            if given.into_iter().all(JointValues::is_empty) {
+                walking.place(&robot, &mut initial)?;
+            }
+            if scenario.ground.is_none() {
+                let problem = "`walk` has nothing to walk on";
+                return Err(fault(&file.keys, "controller.type", problem, "add `ground: {friction: …, planar: true}`"));
+            }
+        }
+        let mut contacts = Contacts::new(&robot, scenario.ground, &dynamics, &file.keys)?;
+        if !contacts.is_empty() {
+            if !matches!(scenario.integrator, Integrator::Rk4 { .. }) {
+                let problem = format!("`{}` cannot hold a robot by constraints or contacts", scenario.integrator.name());
+                return Err(fault(&file.keys, "integrator.method", problem, "use `rk4`"));
+            }
+            let rest = vec![0.0; dynamics.nv()];
+            contacts.start(&mut dynamics, &mut initial, (&rest, &mut loads), &file.keys, &mut warnings)?;
+        }
         let modes = modes::modes(&mut dynamics, &joints, &initial.q, &initial.theta)?;
         let sampler = Sampler::new(&robot, &joints, &dynamics)?;
         let adaptive =
@@ -110,6 +131,7 @@ impl Simulation {
             references,
             control,
             loads,
+            contacts,
             sampler,
             adaptive,
             modes,
@@ -159,6 +181,16 @@ impl Simulation {
         &self.state
     }
 
+    /// What happened to the robot's contacts in the last run, in order.
+    pub fn events(&self) -> &[Event] {
+        self.contacts.events()
+    }
+
+    /// What holds the robot beside its joints.
+    pub fn contacts(&self) -> &Contacts {
+        &self.contacts
+    }
+
     /// What the user should know, so far.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
@@ -167,6 +199,8 @@ impl Simulation {
     /// What a recorder must know before the first sample.
     pub fn run_info(&self) -> RunInfo {
         let mut info = RunInfo::new(&self.robot, self.robot.fidelity);
+        info.held = !self.contacts.is_empty();
+        info.contacts = self.contacts.names().map(str::to_owned).collect();
         for source in std::iter::once(&self.file.source).chain(&self.file.csv) {
             info.attachments.push((source.name.clone(), source.text.clone()));
         }

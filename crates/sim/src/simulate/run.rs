@@ -63,6 +63,9 @@ impl Simulation {
             fastest_mode: self.modes.fastest().cloned(),
             largest_step: self.modes.largest_step(&scenario.integrator),
             energy_drift: done.tally.energy_drift(),
+            events: self.contacts.events().to_vec(),
+            contacts: self.contacts.names().map(str::to_owned).collect(),
+            constraint_drift: (!self.contacts.is_empty()).then(|| self.contacts.largest_drift()),
             joints: done.tally.joints(&self.joints, &self.control),
             warnings: self.warnings.iter().map(Warning::to_string).collect(),
         })
@@ -83,6 +86,12 @@ impl Simulation {
         self.control.reset();
         self.control.start(&self.references)?;
         self.warnings.truncate(self.setup_warnings);
+        self.loads.set_couple(None, 0);
+        if !self.contacts.is_empty() {
+            // What there was to say, it said when it was set up.
+            let (start, keys) = ((self.tau.as_slice(), &mut self.loads), &self.file.keys);
+            self.contacts.start(&mut self.dynamics, &mut self.state, start, keys, &mut Vec::new())?;
+        }
         let n = self.joints.len();
         let mut done = Progress { t: 0.0, steps: 0, interrupted: false, tally: Tally::new(n), beyond: vec![false; n] };
         for instant in self.clock() {
@@ -113,20 +122,69 @@ impl Simulation {
             return Ok(());
         }
         self.references.points(instant.t, &mut self.points);
+        if let Some(walking) = self.control.walking() {
+            walking.reference(instant.t, &mut self.points);
+        }
         if instant.control {
             let known = self.nominal.as_mut().map_or(&mut self.dynamics, |n| &mut n.dynamics);
             let at = Tick { t: instant.t, references: &self.references, points: &self.points };
             self.control.tick(known, at, self.state.view(), &mut self.tau)?;
+            self.walk(instant.t)?;
+            self.agree(instant.t)?;
         }
         if !instant.log {
             return Ok(());
         }
         self.loads.set_time(instant.t);
         let (sampler, state) = (&mut self.sampler, self.state.view());
-        sampler.take(instant.t, &mut self.dynamics, state, &self.tau, &mut self.loads, &self.points)?;
+        let contacts = Some(&mut self.contacts).filter(|contacts| !contacts.is_empty());
+        sampler.take(instant.t, &mut self.dynamics, state, &self.tau, &mut self.loads, contacts, &self.points)?;
         done.tally.add(&sampler.sample);
         recorder.record(&sampler.sample)?;
         self.watch_limits(instant.t, &mut done.beyond);
+        Ok(())
+    }
+
+    /// The same for a robot that something holds. A walk is told of feet that touch down when they do.
+    fn advance_held(
+        &mut self,
+        t: f64,
+        length: f64,
+        step: f64,
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<(u64, Option<f64>), Error> {
+        let (mut now, end, mut steps) = (t, t + length, 0);
+        loop {
+            let walks = self.control.walking().is_some();
+            let (forces, pace) = ((self.tau.as_slice(), &mut self.loads), (step, walks));
+            let (dynamics, state) = (&mut self.dynamics, &mut self.state);
+            let advance = self.contacts.advance(dynamics, state, forces, now, end - now, pace, progress)?;
+            steps += advance.steps;
+            let Some(ended) = advance.ended else { return Ok((steps, None)) };
+            if advance.stopped {
+                return Ok((steps, Some(ended)));
+            }
+            now = ended;
+            self.walk(now)?;
+            self.agree(now)?;
+        }
+    }
+
+    /// Contacts hear of new torques at once, so that no sample shows a force that they could not exert.
+    fn agree(&mut self, t: f64) -> Result<(), Error> {
+        if self.contacts.is_empty() {
+            return Ok(());
+        }
+        let forces = (self.tau.as_slice(), &mut self.loads);
+        self.contacts.agree(&mut self.dynamics, &mut self.state, forces, t)
+    }
+
+    /// What a walk does besides: it hears of feet that touched down, and asks for a couple of the ground.
+    fn walk(&mut self, t: f64) -> Result<(), Error> {
+        let (events, state) = (self.contacts.events(), self.state.view());
+        if let Some(couple) = self.control.walk(t, events, state, &mut self.tau)? {
+            self.loads.set_couple(Some(couple), self.robot.bodies.len());
+        }
         Ok(())
     }
 
@@ -139,6 +197,9 @@ impl Simulation {
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<(u64, Option<f64>), Error> {
         let scheme = self.file.scenario.integrator;
+        if !self.contacts.is_empty() {
+            return self.advance_held(t, length, scheme.fixed_step().unwrap_or(length), progress);
+        }
         if let Some(adaptive) = &mut self.adaptive {
             let (state, go_on) = (self.state.view_mut(), &mut |into: f64| progress(t + into));
             return match adaptive.advance(&mut self.dynamics, &mut self.loads, state, &self.tau, length, go_on) {

@@ -1,5 +1,6 @@
 //! From a state to a sample: everything that is logged.
 
+use crate::contact::Contacts;
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
 use crate::error::Error;
@@ -124,11 +125,21 @@ impl Sampler {
         state: State<f64>,
         tau: &[f64],
         loads: &mut Loads,
+        contacts: Option<&mut Contacts>,
         reference: &[Point],
     ) -> Result<(), Error> {
-        loads.update(dynamics, state.q)?;
         let out = Forward { qdd: &mut self.qdd, thetadd: &mut self.thetadd, tau_j: &mut self.tau_j };
-        dynamics.forward(state, tau, loads.external(), out)?;
+        match contacts {
+            Some(contacts) => {
+                contacts.forward(dynamics, state, tau, loads, out)?;
+                let footing = self.sample.footing.get_or_insert_default();
+                contacts.report(dynamics, state.q, loads.couple(), footing)?;
+            }
+            None => {
+                loads.update(dynamics, state.q)?;
+                dynamics.forward(state, tau, loads.external(), out)?;
+            }
+        }
         self.gyroscopic_torque(dynamics, state)?;
         self.significance(dynamics, state)?;
         self.frames(dynamics, state.q)?;

@@ -1,5 +1,6 @@
 //! What a run amounted to.
 
+use crate::contact::Event;
 use crate::controller::Control;
 use crate::coordinates::Coordinates;
 use crate::modes::Mode;
@@ -36,6 +37,12 @@ pub struct Summary {
     /// Largest change of the total energy over the largest kinetic energy [–]; only for runs without motor torques, loads,
     /// friction and damping.
     pub energy_drift: Option<f64>,
+    /// What happened to contacts with the ground; empty without.
+    pub events: Vec<Event>,
+    /// Names of the contacts that the events number.
+    pub contacts: Vec<String>,
+    /// Largest error of position of all that was held [m or rad]; absent where nothing was.
+    pub constraint_drift: Option<f64>,
     /// One entry per joint.
     pub joints: Vec<JointSummary>,
     /// What the user should know about the run.

@@ -97,13 +97,7 @@ pub(super) struct Chain {
 
 impl Chain {
     /// The chain that stands on a leg. With `rotors` it has the reflected inertias of rigid gears.
-    pub(super) fn new(
-        robot: &Robot,
-        parts: &Parts,
-        side: Side,
-        beliefs: Beliefs,
-        rotors: bool,
-    ) -> Result<Self, Error> {
+    pub(super) fn new(robot: &Robot, parts: &Parts, side: Side, beliefs: Beliefs, rotors: bool) -> Result<Self, Error> {
         let [hip, knee] = Parts::leg(side).map(|at| parts.bodies[at]);
         let [far_hip, far_knee] = Parts::leg(other(side)).map(|at| parts.bodies[at]);
         let trunk = parts.bodies[2];
@@ -228,6 +222,8 @@ fn lowered(bodies: &[BodySpec], gravity: Vec3<f64>) -> Result<OwnedModel, Error>
         warnings: Vec::new(),
         sources: Vec::new(),
         payload: None,
+        contacts: Vec::new(),
+        held: Vec::new(),
     };
     robot.model(Fidelity::RigidReflected)
 }

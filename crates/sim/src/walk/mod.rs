@@ -31,8 +31,8 @@ pub struct WalkSettings {
     pub single: Sliding,
     /// The law on two feet.
     pub double: Sliding,
-    /// Force of the ground on the rear foot that the law on two feet aims at, ahead and up [N].
-    pub rear: [f64; 2],
+    /// Part of the ground's force that the law on two feet would leave to the rear foot, at the beginning and at the end of that time.
+    pub rear_share: [f64; 2],
 }
 
 /// A walking controller.
@@ -44,7 +44,9 @@ pub struct Walker {
     chains: [Chain; 2],
     single: Law,
     double: Law,
-    rear: Vector2<f64>,
+    rear_share: [f64; 2],
+    mass: f64,
+    gravity: f64,
     step: i64,
     phase: Phase,
     errors: [f64; 3],
@@ -67,12 +69,7 @@ impl Walker {
     ///
     /// # Errors
     /// A robot that is no planar biped.
-    pub fn new(
-        robot: &Robot,
-        feet: [Vec3<f64>; 2],
-        gait: PlanarGait,
-        settings: WalkSettings,
-    ) -> Result<Self, Error> {
+    pub fn new(robot: &Robot, feet: [Vec3<f64>; 2], gait: PlanarGait, settings: WalkSettings) -> Result<Self, Error> {
         let parts = Parts::of(robot, feet)?;
         let chain = |side| Chain::new(robot, &parts, side, settings.beliefs, settings.rotors);
         Ok(Self {
@@ -81,7 +78,9 @@ impl Walker {
             parts,
             single: Law::new(settings.single),
             double: Law::new(settings.double),
-            rear: Vector2::from(settings.rear),
+            rear_share: settings.rear_share,
+            mass: settings.beliefs.mass * robot.bodies.iter().map(|b| b.inertia.mass).sum::<f64>(),
+            gravity: -robot.gravity.z,
             step: 0,
             phase: Phase::Single,
             errors: [0.0; 3],
@@ -98,6 +97,11 @@ impl Walker {
     /// Step and phase.
     pub fn phase(&self) -> (i64, Phase) {
         (self.step, self.phase)
+    }
+
+    /// Indices of [`PlanarGait::COORDINATES`] among the robot's.
+    pub fn coordinates(&self) -> [usize; 7] {
+        self.parts.v
     }
 
     /// The gait.
@@ -179,7 +183,12 @@ impl Walker {
                     acceleration: &aims.map(|p| p.qdd),
                     measured: Outputs { p: &q7[..3], pd: &qd7[..3] },
                 };
-                self.double.on_two_feet(chain, (&s, &rates), &follow, self.rear, step)?
+                // The ground carries the robot as if all of it moved with the hip.
+                let [first, last] = self.rear_share;
+                let left = (self.step + 1) as f64 * self.gait.parameters().step_time() - t;
+                let share = last + (first - last) * (left / self.gait.parameters().double_support).clamp(0.0, 1.0);
+                let force = Vector2::new(posture.hip.x.qdd, self.gravity + posture.hip.z.qdd) * self.mass;
+                self.double.on_two_feet(chain, (&s, &rates), &follow, force * share, step)?
             }
         };
         let mut out = vec![0.0; qd.len()];

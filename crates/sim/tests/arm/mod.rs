@@ -25,6 +25,8 @@ pub(crate) fn arm(floating: bool) -> Robot {
         warnings: Vec::new(),
         sources: Vec::new(),
         payload: None,
+        contacts: Vec::new(),
+        held: Vec::new(),
     };
     let mut parent = None;
     if floating {

@@ -55,6 +55,12 @@ pub fn sample(k: usize) -> Sample {
         power_in: wave(5.3),
         dissipation: wave(5.4).abs(),
         significance: 0.0,
+        footing: Some(Footing {
+            contacts: vec![Touch { force: [6.0, 6.1, 6.2].map(wave), gap: wave(6.3), mode: 1.0 }],
+            center_of_mass: [6.4, 6.5, 6.6].map(wave),
+            zero_moment_point: [6.7, 6.8].map(wave),
+            drift: wave(6.9).abs(),
+        }),
         frames: vec![
             pose([0.0, 0.0, 1.0], 7.0 * t),
             pose([1.0, -2.0, 0.5], half_turn + t),

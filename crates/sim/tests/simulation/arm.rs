@@ -46,6 +46,8 @@ pub fn arm(n: usize) -> Robot {
         warnings: Vec::new(),
         sources: Vec::new(),
         payload: None,
+        contacts: Vec::new(),
+        held: Vec::new(),
     };
     for i in 0..n {
         let parent = i.checked_sub(1);

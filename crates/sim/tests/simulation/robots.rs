@@ -40,7 +40,7 @@ fn robots_follow_their_references() {
 
 #[test]
 fn robots_without_losses_keep_their_energy() {
-    for name in ["planar_3r/free.yaml", "iiwa14/free.yaml"] {
+    for name in ["planar_3r/free.yaml", "iiwa14/free.yaml", "biped5/fall.yaml"] {
         let drift = run(name).energy_drift.unwrap();
         assert!(drift < 1e-6, "{name}: {drift}");
     }

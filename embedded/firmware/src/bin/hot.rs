@@ -10,6 +10,7 @@ use gyroflex::spatial::Transform;
 use gyroflex_firmware::arm::{N, complete};
 use gyroflex_firmware::controller::{Controller, Measured, PERIOD};
 use gyroflex_firmware::elastic::Elastic;
+use gyroflex_firmware::held::Held;
 use gyroflex_firmware::random::{Dice, Point};
 use gyroflex_firmware::reference::Reference;
 
@@ -22,7 +23,7 @@ fn main() -> ! {
     let mut poses = [Transform::identity(); N];
     let mut next = [0.0; N];
     let mut way = 0.0;
-    let (mut elastic, mut dice) = (Elastic::new(), Dice::new(1));
+    let (mut elastic, mut held, mut dice) = (Elastic::new(), Held::new(), Dice::new(1));
     loop {
         let measured = black_box(Measured::default());
         // A wrong length is an error, never a panic.
@@ -30,6 +31,10 @@ fn main() -> ! {
         let placed = placements(model, &measured.q, &mut poses);
         let moved = integrate(model, &measured.q, &measured.qd, &mut next);
         let inverted = elastic.invert(model, &Point::random(&mut dice));
+        let point = Point::random(&mut dice);
+        let (held_by, caught, driven) =
+            (held.accelerate(model, &point), held.catch(model, &point), held.drive(model, &point));
+        black_box((&held_by, &caught, &driven, &held.tau, &held.wrench));
         black_box((&inverted, &elastic.tau, &tau, &placed, &moved, &poses, &next, &controller.observer.contact));
         way += PERIOD;
     }

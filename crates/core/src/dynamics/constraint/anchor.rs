@@ -9,7 +9,7 @@ use crate::dynamics::tree::Tree;
 use crate::spatial::{Force, Mat3, Motion, Transform, Vec3};
 
 /// A constraint at a state; arrays have an entry for each of six directions, zero in those that are free.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Held<F> {
     /// Wrench about the base's origin of a unit multiplier, on the frame's body; the anchor's body feels the opposite.
     pub(super) wrenches: [Force<F>; 6],
@@ -56,7 +56,7 @@ impl<F: Scalar> Held<F> {
     }
 
     #[inline(always)]
-    fn free() -> Self {
+    pub(super) fn free() -> Self {
         let zero = [F::zero(); 6];
         Self { wrenches: [Force::zero(); 6], error: zero, velocity: zero, bias: zero, point: Vec3::zero() }
     }
@@ -104,6 +104,18 @@ impl<F: Scalar> Held<F> {
             }
         }
         held
+    }
+
+    /// The same in other numbers.
+    #[inline(always)]
+    pub(super) fn map<U>(self, f: impl Fn(F) -> U) -> Held<U> {
+        Held {
+            wrenches: self.wrenches.map(|w| w.map(&f)),
+            error: self.error.map(&f),
+            velocity: self.velocity.map(&f),
+            bias: self.bias.map(&f),
+            point: self.point.map(&f),
+        }
     }
 
     /// Wrench about the frame's origin, in world axes, of the multipliers.

@@ -10,7 +10,11 @@ use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
 use crate::dynamics::aba::{self, Found, Known};
 use crate::dynamics::aba_base::Base;
-use crate::dynamics::{AbaScratch, External, Forward, JointSpaceScratch, State, check_scratch, joint_space_len};
+use crate::dynamics::tree::Tree;
+use crate::dynamics::{
+    AbaScratch, External, Forward, JointSpaceScratch, State, check_external, check_scratch, check_state,
+    joint_space_len,
+};
 use crate::model::{Model, SizeError};
 use crate::spatial::{Force, Motion, Vec3};
 
@@ -115,13 +119,33 @@ pub fn constrained_forward_dynamics<T: Scalar>(
     out: Forward<T>,
     forces: Constrained<T>,
 ) -> Result<Solved<T>, ConstraintError> {
-    super::super::check_state(model, &state)?;
-    super::super::check_external(model, &ext)?;
-    out.check(model, tau)?;
-    check_sizes(model, constraints, &scratch, &forces)?;
     if model.has_remote_rigid_rotor() {
+        check_inputs(model, &state, tau, &ext, &out)?;
+        check_sizes(model, constraints, &scratch, &forces)?;
         return forward(model, state, tau, ext, constraints, regularisation, scratch, out, forces);
     }
+    constrained_aba(model, state, tau, ext, constraints, regularisation, scratch, out, forces)
+}
+
+/// The same by the articulated-body algorithm alone: exact, but for robots with [`Model::has_remote_rigid_rotor`]. It links no code that could panic,
+/// and `joint_space` and `joint_matrix` of the scratch are not used.
+///
+/// # Errors
+/// A slice that does not fit, or a constraint that does not fit the model; nothing is written then.
+#[expect(clippy::too_many_arguments)]
+pub fn constrained_aba<T: Scalar>(
+    model: &Model<T::Param>,
+    state: State<T>,
+    tau: &[T],
+    ext: External<T>,
+    constraints: &[Constraint<T>],
+    regularisation: Regularisation<T>,
+    scratch: ConstrainedScratch<T>,
+    out: Forward<T>,
+    forces: Constrained<T>,
+) -> Result<Solved<T>, ConstraintError> {
+    check_inputs(model, &state, tau, &ext, &out)?;
+    check_sizes(model, constraints, &scratch, &forces)?;
     let (mut scratch, mut out, mut forces) = (scratch, out, forces);
     let solved = T::dispatch(ConstrainedAba {
         model,
@@ -135,6 +159,18 @@ pub fn constrained_forward_dynamics<T: Scalar>(
         forces: &mut forces,
     })?;
     Ok(solved)
+}
+
+fn check_inputs<T: Scalar>(
+    model: &Model<T::Param>,
+    state: &State<T>,
+    tau: &[T],
+    ext: &External<T>,
+    out: &Forward<T>,
+) -> Result<(), SizeError> {
+    check_state(model, state)?;
+    check_external(model, ext)?;
+    out.check(model, tau)
 }
 
 pub(super) fn check_sizes<T: Scalar>(
@@ -174,52 +210,47 @@ impl<T: Scalar> Kernel<T> for ConstrainedAba<'_, '_, '_, T> {
 
     #[inline(always)]
     fn run<F: Over<T>>(self) -> Result<Solved<T>, SizeError> {
-        if self.model.plain { self.passes::<F, true>() } else { self.passes::<F, false>() }
-    }
-}
-
-impl<T: Scalar> ConstrainedAba<'_, '_, '_, T> {
-    #[inline(always)]
-    fn passes<F: Over<T>, const PLAIN: bool>(self) -> Result<Solved<T>, SizeError> {
         let Self { model, state, tau, ext, constraints, regularisation, scratch, out, forces } = self;
         let known = Known::of(model, state, tau, ext)?;
-        let ConstrainedScratch { bodies, supports, constraints: kept, propagated, matrix, .. } = scratch;
-        let (_, bodies) = known.tree.bodies_mut("scratch", bodies)?;
-        let (_, supports) = known.tree.bodies_mut("scratch", supports)?;
         let mut found = Found::of(&known.tree, out)?;
-        let mut base = aba::outward::<T, F, PLAIN>(&known, bodies, found.tau_j);
-        aba::inward::<T, F, PLAIN>(&known, bodies, &mut base);
-
         let lift = -model.gravity.map(F::from_param);
+        // Only the sweeps have a variant for plain robots: code for constraints is long.
+        let bodies = known.tree.bodies_mut("scratch", &mut *scratch.bodies)?.1;
+        let mut base = if model.plain {
+            let mut base = aba::outward::<T, F, true>(&known, bodies, found.tau_j);
+            aba::inward::<T, F, true>(&known, bodies, &mut base);
+            base
+        } else {
+            let mut base = aba::outward::<T, F, false>(&known, bodies, found.tau_j);
+            aba::inward::<T, F, false>(&known, bodies, &mut base);
+            base
+        };
         let root = Root::of(&known.tree, state.q, state.qd);
         let (free_base, _) = base.acceleration::<T>(lift, tau, ext);
-        let at = Place { known: &known, root, lift: root.pose.rot * lift, free_base };
-        at.gather::<PLAIN>(constraints, &base, bodies, supports, kept, propagated, matrix);
-
+        let (tree, q, qd) = (known.tree, known.q, known.qd);
+        let at = Place { tree, q, qd, root, lift: root.pose.rot * lift, free_base };
         // Φ̈ = −2 ω Φ̇ − ω² Φ
-        let mut row = 0;
-        let mut system = System::of(forces.multipliers.len(), matrix);
-        for (constraint, kept) in constraints.iter().zip(kept.iter()) {
-            let held = at.held(constraint, supports);
+        let wanted = |constraint: &Constraint<T>, held: &Held<T>, free: F, k: usize| {
             let omega = F::load(constraint.stabilisation);
-            for k in (0..6).filter(|k| constraint.holds(*k)) {
-                let wanted = -(omega * (held.velocity[k] + held.velocity[k] + omega * held.error[k]));
-                if let Some(b) = system.b.get_mut(row) {
-                    *b = (wanted - F::load(kept.free[k])).store();
-                }
-                row += 1;
-            }
+            let (velocity, error) = (F::load(held.velocity[k]), F::load(held.error[k]));
+            -(omega * (velocity + velocity + omega * error)) - free
+        };
+        let solved = at.hold(constraints, wanted, (regularisation, false), &mut base, scratch, forces)?;
+        let bodies = known.tree.bodies_mut("scratch", &mut *scratch.bodies)?.1;
+        if model.plain {
+            aba::accelerations::<T, F, true>(&known, bodies, &base, &mut found);
+        } else {
+            aba::accelerations::<T, F, false>(&known, bodies, &base, &mut found);
         }
-        let solved = system.solve::<F>(constraints, regularisation, false, forces.multipliers);
-        at.load(constraints, &mut base, bodies, supports, kept, propagated, forces);
-        aba::accelerations::<T, F, PLAIN>(&known, bodies, &base, &mut found);
         Ok(solved)
     }
 }
 
 /// A robot at a state, between the second and the third sweep.
 pub(super) struct Place<'a, 'm, T: Scalar, F> {
-    pub(super) known: &'a Known<'a, 'm, T>,
+    pub(super) tree: Tree<'m, T::Param>,
+    pub(super) q: &'a [T],
+    pub(super) qd: &'a [T],
     pub(super) root: Root<F>,
     /// Acceleration upwards that stands for gravity, in base axes.
     pub(super) lift: Vec3<F>,
@@ -228,15 +259,41 @@ pub(super) struct Place<'a, 'm, T: Scalar, F> {
 }
 
 impl<T: Scalar, F: Over<T>> Place<'_, '_, T, F> {
+    /// Finds the multipliers for which `Φ̈`, or the jump of `Φ̇`, becomes what it would be without them plus `wanted`, and loads joints and base with their
+    /// forces.
     #[inline(always)]
-    pub(super) fn held(&self, constraint: &Constraint<T>, supports: &[SupportScratch<T>]) -> Held<F> {
-        Held::of(constraint, &self.known.tree, &self.root, self.known.q, self.known.qd, supports)
+    pub(super) fn hold(
+        &self,
+        constraints: &[Constraint<T>],
+        wanted: impl Fn(&Constraint<T>, &Held<T>, F, usize) -> F,
+        (regularisation, release): (&Regularisation<T>, bool),
+        base: &mut Base<F>,
+        scratch: &mut ConstrainedScratch<T>,
+        forces: &mut Constrained<T>,
+    ) -> Result<Solved<T>, SizeError> {
+        let tree = &self.tree;
+        let ConstrainedScratch { bodies, supports, constraints: kept, propagated, matrix, .. } = scratch;
+        let (bodies, supports) = (tree.bodies_mut("scratch", bodies)?.1, tree.bodies_mut("scratch", supports)?.1);
+        self.gather(constraints, base, bodies, supports, kept, propagated, matrix);
+        let mut row = 0;
+        let mut system = System::of(forces.multipliers.len(), matrix);
+        for (constraint, kept) in constraints.iter().zip(kept.iter()) {
+            for k in (0..6).filter(|k| constraint.holds(*k)) {
+                if let Some(b) = system.b.get_mut(row) {
+                    *b = wanted(constraint, &kept.held, F::load(kept.free[k]), k).store();
+                }
+                row += 1;
+            }
+        }
+        let solved = system.solve::<F>(constraints, regularisation, release, forces.multipliers);
+        self.load(constraints, base, bodies, kept, propagated, forces);
+        Ok(solved)
     }
 
     /// `J M⁻¹ Jᵀ` into the matrix, and `Φ̈` without the constraints' forces into `kept`.
     #[inline(always)]
     #[expect(clippy::too_many_arguments)]
-    pub(super) fn gather<const PLAIN: bool>(
+    fn gather(
         &self,
         constraints: &[Constraint<T>],
         base: &Base<F>,
@@ -246,14 +303,14 @@ impl<T: Scalar, F: Over<T>> Place<'_, '_, T, F> {
         propagated: &mut [PropagatedScratch<T>],
         matrix: &mut [T],
     ) {
-        let (tree, n) = (&self.known.tree, bodies.len());
+        let (tree, n) = (&self.tree, bodies.len());
         mark(tree, constraints, supports);
         for (s, x) in bodies.iter().zip(supports.iter_mut()) {
             x.theta = s.theta;
         }
-        outward(tree, &self.root, self.known.q, self.known.qd, supports);
+        outward(tree, &self.root, self.q, self.qd, supports);
         for (k, (constraint, kept)) in constraints.iter().zip(kept.iter_mut()).enumerate() {
-            let held = self.held(constraint, supports);
+            let held = Held::of(constraint, tree, &self.root, self.q, self.qd, supports);
             let way = propagated.get_mut(k * n..(k + 1) * n).unwrap_or_default();
             let free = (self.lift, self.free_base);
             propagate(constraint, &held, tree, base, free, (bodies, supports), (way, kept));
@@ -284,13 +341,11 @@ impl<T: Scalar, F: Over<T>> Place<'_, '_, T, F> {
 
     /// The multipliers' forces on joints and base, and in the world.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments)]
-    pub(super) fn load(
+    fn load(
         &self,
         constraints: &[Constraint<T>],
         base: &mut Base<F>,
         bodies: &mut [AbaScratch<T>],
-        supports: &[SupportScratch<T>],
         kept: &[ConstraintScratch<T>],
         propagated: &[PropagatedScratch<T>],
         forces: &mut Constrained<T>,
@@ -315,7 +370,7 @@ impl<T: Scalar, F: Over<T>> Place<'_, '_, T, F> {
             for (force, l) in kept.at_base.iter().zip(lambda) {
                 base.p -= force.map(F::load).scale(l);
             }
-            let held = self.held(constraint, supports);
+            let held = kept.held.map(F::load);
             let total = held.wrenches.iter().zip(lambda).fold(Force::zero(), |sum, (f, l)| sum + f.scale(l));
             if let Some(wrench) = forces.wrenches.get_mut(k) {
                 *wrench = held.wrench_in_world(&self.root, total).map(F::store);

@@ -8,15 +8,16 @@
 //! whole, and the teeth transmit an impulse. The same robot takes a smaller blow with elastic transmissions; what is left in its rotors goes
 //! into the springs afterwards.
 
+use super::anchor::Held;
 use super::forward::{Constrained, ConstrainedScratch, Place, check_sizes};
 use super::frames::Root;
 use super::joint_space::blow;
-use super::solve::{Regularisation, Solved, System};
+use super::solve::{Regularisation, Solved};
 use super::spec::{Constraint, ConstraintError};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
 use crate::dynamics::aba::{self, Found, Known};
-use crate::dynamics::{External, Forward, State};
+use crate::dynamics::{External, Forward, State, check_state};
 use crate::model::{Model, SizeError};
 use crate::spatial::{Motion, Vec3};
 
@@ -49,37 +50,74 @@ pub fn impact<T: Scalar>(
     out: Impact<T>,
     forces: Constrained<T>,
 ) -> Result<Solved<T>, ConstraintError> {
-    super::super::check_state(model, &state)?;
+    if !model.has_remote_rigid_rotor() {
+        return impact_aba(model, state, constraints, release, regularisation, scratch, out, forces);
+    }
+    check(model, &state, constraints, &scratch, &out, &forces)?;
+    let jump = Forward { qdd: &mut *out.qd, thetadd: &mut *out.thetad, tau_j: &mut *out.gears };
+    let solved = blow(model, state, constraints, release, regularisation, scratch, jump, forces)?;
+    add_to(model, &state, out);
+    Ok(solved)
+}
+
+/// The same by the articulated-body algorithm alone: exact, but for robots with [`Model::has_remote_rigid_rotor`]. It links no code that could panic,
+/// and `joint_space` and `joint_matrix` of the scratch are not used.
+///
+/// # Errors
+/// A slice that does not fit, or a constraint that does not fit the model; nothing is written then.
+#[expect(clippy::too_many_arguments)]
+pub fn impact_aba<T: Scalar>(
+    model: &Model<T::Param>,
+    state: State<T>,
+    constraints: &[Constraint<T>],
+    release: bool,
+    regularisation: Regularisation<T>,
+    scratch: ConstrainedScratch<T>,
+    out: Impact<T>,
+    forces: Constrained<T>,
+) -> Result<Solved<T>, ConstraintError> {
+    check(model, &state, constraints, &scratch, &out, &forces)?;
+    let (mut scratch, mut forces) = (scratch, forces);
+    let solved = T::dispatch(Blow {
+        model,
+        state: &state,
+        constraints,
+        release,
+        regularisation: &regularisation,
+        scratch: &mut scratch,
+        out: &mut Forward { qdd: &mut *out.qd, thetadd: &mut *out.thetad, tau_j: &mut *out.gears },
+        forces: &mut forces,
+    })?;
+    add_to(model, &state, out);
+    Ok(solved)
+}
+
+fn check<T: Scalar>(
+    model: &Model<T::Param>,
+    state: &State<T>,
+    constraints: &[Constraint<T>],
+    scratch: &ConstrainedScratch<T>,
+    out: &Impact<T>,
+    forces: &Constrained<T>,
+) -> Result<(), ConstraintError> {
+    check_state(model, state)?;
     SizeError::check("qd after", out.qd.len(), model.nv)?;
     SizeError::check("thetad after", out.thetad.len(), model.nv)?;
     SizeError::check("gears", out.gears.len(), model.nv)?;
-    check_sizes(model, constraints, &scratch, &forces)?;
-    let (mut scratch, mut forces) = (scratch, forces);
-    let mut jump = Forward { qdd: &mut *out.qd, thetadd: &mut *out.thetad, tau_j: &mut *out.gears };
-    let solved = if model.has_remote_rigid_rotor() {
-        blow(model, state, constraints, release, regularisation, scratch, jump, forces)?
-    } else {
-        T::dispatch(Blow {
-            model,
-            state: &state,
-            constraints,
-            release,
-            regularisation: &regularisation,
-            scratch: &mut scratch,
-            out: &mut jump,
-            forces: &mut forces,
-        })?
-    };
+    check_sizes(model, constraints, scratch, forces)
+}
+
+/// From jumps to velocities.
+fn add_to<T: Scalar>(model: &Model<T::Param>, state: &State<T>, out: Impact<T>) {
     for (after, before) in out.qd.iter_mut().zip(state.qd) {
         *after += *before;
     }
+    let mut at = out.thetad.iter_mut().zip(state.thetad).zip(out.qd.iter());
     for body in model.bodies {
-        let k = body.v_index();
-        for i in k..k + body.joint.nv() {
-            out.thetad[i] = if body.is_elastic() { out.thetad[i] + state.thetad[i] } else { out.qd[i] };
+        for ((motor, before), link) in at.by_ref().take(body.joint.nv()) {
+            *motor = if body.is_elastic() { *motor + *before } else { *link };
         }
     }
-    Ok(solved)
 }
 
 struct Blow<'a, 'm, 's, T: Scalar> {
@@ -98,41 +136,31 @@ impl<T: Scalar> Kernel<T> for Blow<'_, '_, '_, T> {
 
     #[inline(always)]
     fn run<F: Over<T>>(self) -> Result<Solved<T>, SizeError> {
-        if self.model.plain { self.passes::<F, true>() } else { self.passes::<F, false>() }
-    }
-}
-
-impl<T: Scalar> Blow<'_, '_, '_, T> {
-    #[inline(always)]
-    fn passes<F: Over<T>, const PLAIN: bool>(self) -> Result<Solved<T>, SizeError> {
         let Self { model, state, constraints, release, regularisation, scratch, out, forces } = self;
         let (weightless, none) = (model.with_gravity(Vec3::zero()), External::none());
         let still = State { q: state.q, qd: &[], theta: &[], thetad: &[] };
         let known = Known::of_impulses(&weightless, &still, &none, state.qd)?;
-        let ConstrainedScratch { bodies, supports, constraints: kept, propagated, matrix, .. } = scratch;
-        let (_, bodies) = known.tree.bodies_mut("scratch", bodies)?;
-        let (_, supports) = known.tree.bodies_mut("scratch", supports)?;
         let mut found = Found::of(&known.tree, out)?;
+        let bodies = known.tree.bodies_mut("scratch", &mut *scratch.bodies)?.1;
         let mut base = aba::at_rest::<T, F>(&known, bodies, found.tau_j);
-        aba::inward::<T, F, PLAIN>(&known, bodies, &mut base);
-
-        let root = Root::of(&known.tree, state.q, state.qd);
-        let at = Place { known: &known, root, lift: Vec3::zero(), free_base: Motion::zero() };
-        at.gather::<PLAIN>(constraints, &base, bodies, supports, kept, propagated, matrix);
-        let mut row = 0;
-        let mut system = System::of(forces.multipliers.len(), matrix);
-        for constraint in constraints {
-            let held = at.held(constraint, supports);
-            for k in (0..6).filter(|k| constraint.holds(*k)) {
-                if let Some(b) = system.b.get_mut(row) {
-                    *b = (-(held.velocity[k] * F::load(rebound(constraint, k)))).store();
-                }
-                row += 1;
-            }
+        if model.plain {
+            aba::inward::<T, F, true>(&known, bodies, &mut base);
+        } else {
+            aba::inward::<T, F, false>(&known, bodies, &mut base);
         }
-        let solved = system.solve::<F>(constraints, regularisation, release, forces.multipliers);
-        at.load(constraints, &mut base, bodies, supports, kept, propagated, forces);
-        aba::accelerations::<T, F, PLAIN>(&known, bodies, &base, &mut found);
+        let root = Root::of(&known.tree, state.q, state.qd);
+        let (tree, q, qd) = (known.tree, known.q, known.qd);
+        let at = Place { tree, q, qd, root, lift: Vec3::zero(), free_base: Motion::zero() };
+        let wanted = |constraint: &Constraint<T>, held: &Held<T>, _, k: usize| {
+            -(F::load(held.velocity[k]) * F::load(rebound(constraint, k)))
+        };
+        let solved = at.hold(constraints, wanted, (regularisation, release), &mut base, scratch, forces)?;
+        let bodies = known.tree.bodies_mut("scratch", &mut *scratch.bodies)?.1;
+        if model.plain {
+            aba::accelerations::<T, F, true>(&known, bodies, &base, &mut found);
+        } else {
+            aba::accelerations::<T, F, false>(&known, bodies, &base, &mut found);
+        }
         Ok(solved)
     }
 }

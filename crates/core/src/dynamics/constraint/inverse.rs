@@ -70,41 +70,73 @@ pub fn constrained_inverse_dynamics<T: Scalar>(
     if let Some(given) = passive.iter().copied().find(|k| *k >= nv) {
         return Err(SizeError { argument: "passive velocity", expected: nv, given }.into());
     }
-    let (jacobian, rest) = matrix.split_at_mut(rows * nv);
-    let (load, rest) = rest.split_at_mut(nv);
-    let (solution, rest) = rest.split_at_mut(rows + passive.len());
+    let (jacobian, rest) = matrix.split_at_mut_checked(rows * nv).unwrap_or_default();
+    let (load, rest) = rest.split_at_mut_checked(nv).unwrap_or_default();
+    let (solution, rest) = rest.split_at_mut_checked(rows + passive.len()).unwrap_or_default();
     let motion = ConstraintMotion { error: &mut [], velocity: &mut [], jacobian: &mut *jacobian };
     constraint_motion(model, state.q, state.qd, constraints, supports, motion)?;
-    rnea(model, state, accel, ext, scratch, Inverse { tau_j: &mut *out.tau_j, tau: &mut *out.tau })?;
+    torques_of(model, state, accel, ext, scratch, Inverse { tau_j: &mut *out.tau_j, tau: &mut *out.tau })?;
 
     // A λ − J_p ν = J_a W h_a + V λ*,   J_pᵀ λ = h_p,   A = J_a W J_aᵀ + V;   h the torques without constraints
     let (n, h) = (rows + passive.len(), &*out.tau_j);
-    let entry = |row: usize, k: usize| jacobian[row * nv + k];
-    let driven = |k: &usize| !passive.contains(k);
+    let row = |r: usize| jacobian.get(r * nv..(r + 1) * nv).unwrap_or_default();
     let mut system = System::of(n, rest);
     system.a.fill(T::zero());
+    // Every torque beside its weight; passive ones weigh nothing.
+    let weighed = |left: &[T], right: &[T]| {
+        let mut sum = T::zero();
+        for (k, ((a, b), w)) in left.iter().zip(right).zip(torques).enumerate() {
+            if !passive.contains(&k) {
+                sum += *a * *w * *b;
+            }
+        }
+        sum
+    };
     for r in 0..rows {
         for c in 0..rows {
-            let sum = (0..nv).filter(driven).fold(T::zero(), |sum, k| sum + entry(r, k) * torques[k] * entry(c, k));
-            system.a[r * n + c] = if r == c { sum + costs[r] } else { sum };
+            set(system.a, r * n + c, weighed(row(r), row(c)));
         }
-        let sum = (0..nv).filter(driven).fold(T::zero(), |sum, k| sum + entry(r, k) * torques[k] * h[k]);
-        system.b[r] = sum + wanted.get(r).map_or(T::zero(), |wanted| *wanted * costs[r]);
+        let cost = at(costs, r);
+        set(system.a, r * n + r, weighed(row(r), row(r)) + cost);
+        set(system.b, r, weighed(row(r), h) + at(wanted, r) * cost);
         for (p, k) in passive.iter().enumerate() {
-            system.a[r * n + rows + p] = -entry(r, *k);
-            system.a[(rows + p) * n + r] = entry(r, *k);
+            set(system.a, r * n + rows + p, -at(row(r), *k));
+            set(system.a, (rows + p) * n + r, at(row(r), *k));
         }
     }
     for (p, k) in passive.iter().enumerate() {
-        system.b[rows + p] = h[*k];
+        set(system.b, rows + p, at(h, *k));
     }
-    let solved = system.solve::<T>(&[] as &[Constraint<T>], &regularisation, false, solution);
-    multipliers.copy_from_slice(&solution[..rows]);
+    let solved = system.solve::<T>(&[], &regularisation, false, solution);
+    multipliers.iter_mut().zip(solution.iter()).for_each(|(to, from)| *to = *from);
 
     for (k, sum) in load.iter_mut().enumerate() {
-        let given = ext.tau.get(k).copied().unwrap_or(T::zero());
-        *sum = multipliers.iter().enumerate().fold(given, |sum, (r, l)| l.mul_add(entry(r, k), sum));
+        *sum = multipliers.iter().enumerate().fold(at(ext.tau, k), |sum, (r, l)| l.mul_add(at(row(r), k), sum));
     }
-    rnea(model, state, accel, External { tau: load, ..ext }, scratch, out)?;
+    torques_of(model, state, accel, External { tau: load, ..ext }, scratch, out)?;
     Ok(solved)
+}
+
+/// [`rnea`], compiled once for its two calls.
+#[inline(never)]
+fn torques_of<T: Scalar>(
+    model: &Model<T::Param>,
+    state: State<T>,
+    accel: Acceleration<T>,
+    ext: External<T>,
+    scratch: &mut [RneaScratch<T>],
+    out: Inverse<T>,
+) -> Result<(), SizeError> {
+    rnea(model, state, accel, ext, scratch, out)
+}
+
+/// Entry `i`, zero beyond the end.
+fn at<T: Scalar>(all: &[T], i: usize) -> T {
+    all.get(i).map_or(T::zero(), |x| *x)
+}
+
+fn set<T>(all: &mut [T], i: usize, x: T) {
+    if let Some(entry) = all.get_mut(i) {
+        *entry = x;
+    }
 }

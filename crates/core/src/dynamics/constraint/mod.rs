@@ -25,9 +25,9 @@ mod propagate;
 mod solve;
 mod spec;
 
-pub use forward::{Constrained, ConstrainedScratch, constrained_forward_dynamics};
+pub use forward::{Constrained, ConstrainedScratch, constrained_aba, constrained_forward_dynamics};
 pub use frames::SupportScratch;
-pub use impact::{Impact, impact};
+pub use impact::{Impact, impact, impact_aba};
 pub use inverse::{TorqueDistribution, constrained_inverse_dynamics, constrained_inverse_len};
 pub use jacobian::{ConstraintMotion, constraint_motion};
 pub use joint_space::constrained_joint_matrix_len;

@@ -42,6 +42,8 @@ impl<T: Scalar> Default for PropagatedScratch<T> {
 /// What is kept for one constraint during a call.
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintScratch<T> {
+    /// The constraint at the present state.
+    pub(super) held: Held<T>,
     /// Force of the six directions that arrives at the base.
     pub(super) at_base: [Force<T>; 6],
     /// How the base would accelerate under it.
@@ -53,7 +55,7 @@ pub struct ConstraintScratch<T> {
 impl<T: Scalar> ConstraintScratch<T> {
     /// Scratch with any content.
     pub fn new() -> Self {
-        Self { at_base: [Force::zero(); 6], gives_way: [Motion::zero(); 6], free: [T::zero(); 6] }
+        Self { held: Held::free(), at_base: [Force::zero(); 6], gives_way: [Motion::zero(); 6], free: [T::zero(); 6] }
     }
 }
 
@@ -208,6 +210,7 @@ pub(super) fn propagate<T: Scalar, F: Over<T>>(
             *way = base.ia.solve(force);
         }
     }
+    kept.held = held.map(F::store);
     kept.free = free.map(F::store);
     kept.at_base = at_base.map(|f| f.map(F::store));
     kept.gives_way = gives_way.map(|m| m.map(F::store));

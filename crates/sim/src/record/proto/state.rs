@@ -2,7 +2,7 @@
 
 use super::foxglove::{Quaternion, Vector3};
 use super::message;
-use crate::record::{RunInfo, Sample};
+use crate::record::{Footing, RunInfo, Sample, Touch};
 
 message! { "gyroflex" "gyroflex/Joint.proto"
     /// One joint at one instant. Motor quantities are reflected to the link side.
@@ -36,6 +36,26 @@ message! { "gyroflex" "gyroflex/Base.proto"
     }
 }
 
+message! { "gyroflex" "gyroflex/Contact.proto"
+    /// A point of the robot that the ground may hold.
+    Contact {
+        1 name: [string] String, "Name of the contact point";
+        2 force: [message, optional] Option<Vector3>, "Force of the ground on it, world axes [N]";
+        3 gap: [double] f64, "Height above the ground [m]";
+        4 mode: [double] f64, "0 off the ground, 1 held by it, 2 slipping on it";
+    }
+}
+
+message! { "gyroflex" "gyroflex/Footing.proto"
+    /// What holds a robot beside its joints.
+    Support {
+        1 contacts: [message, repeated] Vec<Contact>, "Points that the ground may hold";
+        2 center_of_mass: [message, optional] Option<Vector3>, "Centre of mass in the world [m]";
+        3 zero_moment_point: [message, optional] Option<Vector3>, "Where the ground's forces have no moment along it, in the world [m]";
+        4 constraint_drift: [double] f64, "Largest error of position of all that is held so far [m or rad]";
+    }
+}
+
 message! { "gyroflex" "gyroflex/State.proto"
     /// The state of a robot with flexible joints at one instant.
     State {
@@ -48,6 +68,7 @@ message! { "gyroflex" "gyroflex/State.proto"
         7 dissipation: [double] f64, "Power lost in friction and damping, not negative [W]";
         8 significance: [double] f64, "Significance ratio of the gyroscopic coupling, Zhao et al. 2015, eq. 12 [-]";
         9 base: [message, optional] Option<Base>, "Floating root; absent on a fixed one";
+        10 footing: [message, optional] Option<Support>, "What holds the robot beside its joints; absent where nothing does";
     }
 }
 
@@ -81,6 +102,7 @@ impl State {
             dissipation: s.dissipation,
             significance: s.significance,
             base: s.base_pose.zip(s.base_twist).map(|(pose, twist)| Base::new(pose, twist)),
+            footing: s.footing.as_ref().map(|footing| Support::new(info, footing)),
         }
     }
 
@@ -111,7 +133,44 @@ impl State {
             dissipation: self.dissipation,
             significance: self.significance,
             frames: Vec::new(),
+            footing: self.footing.as_ref().map(Support::footing),
         }
+    }
+}
+
+impl Support {
+    fn new(info: &RunInfo, footing: &Footing) -> Self {
+        let vector = |[x, y, z]: [f64; 3]| Some(Vector3 { x, y, z });
+        let contact = |(name, touch): (&String, &Touch)| Contact {
+            name: name.clone(),
+            force: vector(touch.force),
+            gap: touch.gap,
+            mode: touch.mode,
+        };
+        let [x, y] = footing.zero_moment_point;
+        Self {
+            contacts: info.contacts.iter().zip(&footing.contacts).map(contact).collect(),
+            center_of_mass: vector(footing.center_of_mass),
+            zero_moment_point: vector([x, y, 0.0]),
+            constraint_drift: footing.drift,
+        }
+    }
+
+    fn footing(&self) -> Footing {
+        let numbers = |v: &Option<Vector3>| v.as_ref().map_or([0.0; 3], |v| [v.x, v.y, v.z]);
+        let touch = |c: &Contact| Touch { force: numbers(&c.force), gap: c.gap, mode: c.mode };
+        let [x, y, _] = numbers(&self.zero_moment_point);
+        Footing {
+            contacts: self.contacts.iter().map(touch).collect(),
+            center_of_mass: numbers(&self.center_of_mass),
+            zero_moment_point: [x, y],
+            drift: self.constraint_drift,
+        }
+    }
+
+    /// Names of the contacts.
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.contacts.iter().map(|c| c.name.clone()).collect()
     }
 }
 

@@ -1,0 +1,367 @@
+//! A robot that the ground or its own loops hold: contacts that open, close, stick and slip, found where they do so in time.
+//!
+//! Between events what is held does not change, and classical Runge-Kutta steps solve constrained dynamics. When a step ends where a contact
+//! has passed the ground, would pull, or would be held by more than friction can, the instant at which that began is found by bisection,
+//! so that it does not depend on the step.
+
+mod events;
+mod impacts;
+mod points;
+mod stepper;
+
+pub use events::{Event, EventKind};
+pub use points::Mode;
+pub use stepper::Advance;
+
+use crate::dynamics::Dynamics;
+use crate::error::{Error, ErrorKind, Warning};
+use crate::load::yaml::Keys;
+use crate::loads::Loads;
+use crate::record::{Footing, Touch};
+use crate::robot::Robot;
+use crate::scenario::{Ground, fault};
+use crate::simulate::StateVec;
+use gyroflex::dynamics::{Constrained, Constraint, ConstraintMotion, Forward, Regularisation, Solved, State};
+use gyroflex::spatial::{Force, Transform, Vec3};
+use points::Point;
+use stepper::Stages;
+
+/// Directions that less than this part of their own compliance tells from others are dependent.
+pub(crate) const THRESHOLD: f64 = 1e-9;
+/// Constraints that start farther off than this are not kept [m or rad].
+const START: f64 = 1e-3;
+
+/// Everything that holds a robot beside its joints.
+#[derive(Clone, Debug)]
+pub struct Contacts {
+    ground: Option<Ground>,
+    names: Vec<String>,
+    points: Vec<Point>,
+    /// Always in force.
+    permanent: Vec<Constraint<f64>>,
+    /// In force now: the permanent ones, then the closed contacts in the order of `closed`.
+    constraints: Vec<Constraint<f64>>,
+    closed: Vec<usize>,
+    multipliers: Vec<f64>,
+    wrenches: Vec<Force<f64>>,
+    velocities: Vec<f64>,
+    errors: Vec<f64>,
+    poses: Vec<Transform<f64>>,
+    /// Accelerations, reused.
+    motion: [Vec<f64>; 3],
+    stages: Stages,
+    events: Vec<Event>,
+    largest_drift: f64,
+}
+
+impl Contacts {
+    /// What holds `robot`: its constraints, and contacts with the ground if the scenario has one. `keys` are the places of the scenario's keys.
+    ///
+    /// # Errors
+    /// A ground without contact points, and constraints that the robot's first state does not keep.
+    pub fn new(robot: &Robot, ground: Option<Ground>, dynamics: &Dynamics, keys: &Keys) -> Result<Self, Error> {
+        if ground.is_some() && robot.contacts.is_empty() {
+            let remedy = "name points under `contacts` in the robot's YAML, or take `ground` out";
+            return Err(fault(keys, "ground", "the robot has no points that could touch it", remedy));
+        }
+        let permanent: Vec<_> = robot
+            .held
+            .iter()
+            .map(|part| Constraint { hold: part.hold, stabilisation: part.stabilisation, contact: None })
+            .collect();
+        let used = if ground.is_some() { robot.contacts.as_slice() } else { &[] };
+        let (nq, nv, bodies) = (dynamics.nq(), dynamics.nv(), robot.bodies.len());
+        Ok(Self {
+            names: robot.held.iter().map(|p| p.name.clone()).collect(),
+            points: used.iter().map(Point::new).collect(),
+            constraints: permanent.clone(),
+            permanent,
+            ground,
+            closed: Vec::new(),
+            multipliers: Vec::new(),
+            wrenches: Vec::new(),
+            velocities: Vec::new(),
+            errors: Vec::new(),
+            poses: vec![Transform::identity(); bodies],
+            motion: [(); 3].map(|()| vec![0.0; nv]),
+            stages: Stages::new(nq, nv),
+            events: Vec::new(),
+            largest_drift: 0.0,
+        })
+    }
+
+    /// Whether there is anything to hold the robot.
+    pub fn is_empty(&self) -> bool {
+        self.permanent.is_empty() && self.ground.is_none()
+    }
+
+    /// Names of the contact points.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.points.iter().map(|p| p.name.as_str())
+    }
+
+    /// Mode of a contact point.
+    pub fn mode(&self, contact: usize) -> Mode {
+        self.points[contact].mode
+    }
+
+    /// What happened so far, in order.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// The largest error of position of what is held so far [m or rad].
+    pub fn largest_drift(&self) -> f64 {
+        self.largest_drift
+    }
+
+    /// Brings modes to agree with the forces of new torques.
+    ///
+    /// # Errors
+    /// Contacts that change without end.
+    pub fn agree(
+        &mut self,
+        dynamics: &mut Dynamics,
+        state: &mut StateVec,
+        forces: (&[f64], &mut Loads),
+        t: f64,
+    ) -> Result<(), Error> {
+        self.settle(dynamics, state, forces, t).map(drop)
+    }
+
+    /// Begins at a state at time 0: points on the ground that do not move away are closed.
+    ///
+    /// # Errors
+    /// A point below the ground, with its name and depth, and constraints that the state does not keep, that contradict each other or that leave
+    /// no way to move.
+    pub fn start(
+        &mut self,
+        dynamics: &mut Dynamics,
+        state: &mut StateVec,
+        (tau, loads): (&[f64], &mut Loads),
+        keys: &Keys,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<(), Error> {
+        self.events.clear();
+        self.closed.clear();
+        self.largest_drift = 0.0;
+        self.refresh();
+        self.measure(dynamics, state.view())?;
+        let mut row = 0;
+        for (name, constraint) in self.names.iter().zip(&self.permanent) {
+            for _ in 0..constraint.rows() {
+                let error = self.errors[row];
+                if !(error.abs() <= START) {
+                    let problem = format!("the initial state misses it by {error:.4} m or rad");
+                    let remedy = "choose `initial` so that all constraints are kept, or move the constraint";
+                    return Err(fault(keys, &format!("constraint `{name}` of the robot"), problem, remedy));
+                }
+                row += 1;
+            }
+        }
+        self.start_on_ground(dynamics, state, keys)?;
+        // Velocities that the constraints do not allow are taken out, as by an impact that nobody heard.
+        self.refresh();
+        if !self.constraints.is_empty() {
+            self.blow(dynamics, state, false)?;
+        }
+        let solved = self.settle(dynamics, state, (tau, loads), 0.0)?;
+        self.events.clear();
+        if solved.contradiction > 1e-6 * (1.0 + self.fastest()) {
+            let problem = format!(
+                "{} constrained directions depend on others and contradict them by {:.3e} m/s² or rad/s²",
+                solved.dependent, solved.contradiction
+            );
+            return Err(fault(keys, "constraints of the robot", problem, "take out what is held twice"));
+        }
+        if solved.dependent > 0.0 {
+            let message = format!(
+                "{} constrained directions depend on others: the first ones bear the load alone, their shares mean nothing",
+                solved.dependent
+            );
+            let file = robot_file(keys);
+            warnings.push(Warning { file, element: "constraints of the robot".to_owned(), message });
+        }
+        Ok(())
+    }
+
+    fn fastest(&self) -> f64 {
+        self.motion[0].iter().fold(0.0, |m, a| a.abs().max(m))
+    }
+
+    fn start_on_ground(&mut self, dynamics: &Dynamics, state: &StateVec, keys: &Keys) -> Result<(), Error> {
+        let Some(ground) = self.ground else { return Ok(()) };
+        dynamics.placements(&state.q, &mut self.poses)?;
+        for (i, point) in self.points.iter_mut().enumerate() {
+            let at = point.place(&self.poses);
+            let gap = at.z - ground.height;
+            if gap < -START {
+                let problem = format!("contact `{}` is {:.4} m below the ground", point.name, -gap);
+                return Err(fault(keys, "initial", problem, "raise the robot, or lower `ground.height`"));
+            }
+            point.mode = Mode::Open;
+            point.armed = gap.min(0.0);
+            if gap <= 1e-6 {
+                point.close(at, ground.height);
+                self.closed.push(i);
+            }
+        }
+        Ok(())
+    }
+
+    /// The constraints in force, from the modes of the contacts.
+    fn refresh(&mut self) {
+        self.constraints.truncate(self.permanent.len());
+        if let Some(ground) = self.ground {
+            for i in &self.closed {
+                self.constraints.push(self.points[*i].constraint(&ground));
+            }
+        }
+        let rows = gyroflex::dynamics::constraint_rows(&self.constraints);
+        for rows_of in [&mut self.multipliers, &mut self.velocities, &mut self.errors] {
+            rows_of.resize(rows, 0.0);
+        }
+        self.wrenches.resize(self.constraints.len(), Force::zero());
+    }
+
+    /// Errors and velocities of all that is held.
+    fn measure(&mut self, dynamics: &mut Dynamics, state: State<f64>) -> Result<(), Error> {
+        let out =
+            ConstraintMotion { error: &mut self.errors, velocity: &mut self.velocities, jacobian: &mut [] };
+        dynamics.constraint_motion(state.q, state.qd, &self.constraints, out)
+    }
+
+    /// Directions of friction at a state.
+    fn aim_friction(&mut self, dynamics: &mut Dynamics, state: State<f64>) -> Result<(), Error> {
+        let Some(ground) = self.ground else { return Ok(()) };
+        if ground.planar || self.points.iter().all(|p| p.mode != Mode::Slip) {
+            return Ok(());
+        }
+        self.measure(dynamics, state)?;
+        let mut row = self.permanent_rows();
+        for (k, i) in self.closed.iter().enumerate() {
+            let velocity = Vec3::new(self.velocities[row], self.velocities[row + 1], 0.0);
+            let point = &self.points[*i];
+            if point.mode == Mode::Slip {
+                let contact = &mut self.constraints[self.permanent.len() + k].contact;
+                if let Some(contact) = contact {
+                    contact.slip = Some(point.ratio(velocity, ground.friction));
+                }
+            }
+            row += 3;
+        }
+        Ok(())
+    }
+
+    fn permanent_rows(&self) -> usize {
+        gyroflex::dynamics::constraint_rows(&self.permanent)
+    }
+
+    /// Accelerations of the robot as it is held, and the forces on it; contact forces are then those of [`Contacts::force`].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn forward(
+        &mut self,
+        dynamics: &mut Dynamics,
+        state: State<f64>,
+        tau: &[f64],
+        loads: &mut Loads,
+        out: Forward<f64>,
+    ) -> Result<Solved<f64>, Error> {
+        self.aim_friction(dynamics, state)?;
+        loads.update(dynamics, state.q)?;
+        let forces = Constrained { multipliers: &mut self.multipliers, wrenches: &mut self.wrenches };
+        let regularisation = Regularisation::rank_revealing(THRESHOLD);
+        dynamics.constrained_forward(state, tau, loads.external(), &self.constraints, regularisation, out, forces)
+    }
+
+    /// Force of the ground on a contact point at the last call of [`Contacts::forward`], in world axes [N].
+    pub fn force(&self, contact: usize) -> Vec3<f64> {
+        match self.closed.iter().position(|i| *i == contact) {
+            Some(k) => self.wrenches[self.permanent.len() + k].lin,
+            None => Vec3::zero(),
+        }
+    }
+
+    /// Heights of all contact points above the ground at a position [m].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn gaps(&mut self, dynamics: &Dynamics, q: &[f64], out: &mut Vec<f64>) -> Result<(), Error> {
+        out.clear();
+        let Some(ground) = self.ground else { return Ok(()) };
+        dynamics.placements(q, &mut self.poses)?;
+        out.extend(self.points.iter().map(|p| p.place(&self.poses).z - ground.height));
+        Ok(())
+    }
+
+    /// What is logged: contacts, centre of mass, zero-moment point. Forces are those of the last call of [`Contacts::forward`], `couple` is what the
+    /// ground exerts besides [N m].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn report(
+        &mut self,
+        dynamics: &Dynamics,
+        q: &[f64],
+        couple: Vec3<f64>,
+        out: &mut Footing,
+    ) -> Result<(), Error> {
+        dynamics.placements(q, &mut self.poses)?;
+        let (mut mass, mut moment) = (0.0, Vec3::zero());
+        let model = dynamics.model();
+        for (body, pose) in model.bodies().iter().zip(&self.poses) {
+            // The records are in frames of their own, the poses are those of link frames.
+            let inertia = body.inertia;
+            let link = body.frame.inverse().after(*pose);
+            mass += inertia.mass;
+            moment += link.point(inertia.first_moment.scale(1.0 / inertia.mass.max(f64::MIN_POSITIVE))).scale(inertia.mass);
+        }
+        out.center_of_mass = moment.scale(1.0 / mass).to_array();
+        out.contacts.resize(self.points.len(), Touch::default());
+        let height = self.ground.map_or(0.0, |ground| ground.height);
+        let (mut load, mut at) = (0.0, [-couple.y, couple.x]);
+        for i in 0..self.points.len() {
+            let (place, force) = (self.points[i].place(&self.poses), self.force(i));
+            out.contacts[i] = Touch {
+                force: force.to_array(),
+                gap: place.z - height,
+                mode: self.points[i].mode.number(),
+            };
+            load += force.z;
+            at[0] += place.x * force.z;
+            at[1] += place.y * force.z;
+        }
+        out.zero_moment_point = match load > 0.0 {
+            true => at.map(|moment| moment / load),
+            false => [out.center_of_mass[0], out.center_of_mass[1]],
+        };
+        out.drift = self.largest_drift;
+        Ok(())
+    }
+
+    /// Where a contact point is at a position [m].
+    ///
+    /// # Errors
+    /// A slice that does not fit the model.
+    pub fn place(&mut self, contact: usize, dynamics: &Dynamics, q: &[f64]) -> Result<Vec3<f64>, Error> {
+        dynamics.placements(q, &mut self.poses)?;
+        Ok(self.points[contact].place(&self.poses))
+    }
+}
+
+fn robot_file(keys: &Keys) -> String {
+    keys.locate("robot")
+}
+
+/// A run whose contacts change without end.
+fn chatter(t: f64, name: &str) -> Error {
+    Error {
+        kind: ErrorKind::Diverged,
+        file: String::new(),
+        element: format!("contact `{name}`"),
+        problem: format!("at t = {t} s it opens and closes without end"),
+        remedy: "raise `ground.resting_speed`, lower `ground.restitution`, or drive the robot less violently".to_owned(),
+    }
+}
