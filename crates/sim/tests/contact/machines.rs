@@ -60,7 +60,7 @@ pub fn side_by_side(parts: &[Part], yaml: &str) -> Robot {
 pub fn mass_urdf() -> String {
     let none = String::new;
     let parts =
-        [("x", "prismatic", "1 0 0", none()), ("y", "prismatic", "0 1 0", none()), ("z", "prismatic", "0 0 1", inertial(MASS, 0.0, 0.0, 0.01))];
+        [("x", "prismatic", "1 0 0", none()), ("across", "prismatic", "0 1 0", none()), ("z", "prismatic", "0 0 1", inertial(MASS, 0.0, 0.0, 0.01))];
     urdf(&parts, true)
 }
 

@@ -60,7 +60,7 @@ fn unknown_and_useless_names_are_refused_with_key_and_remedy() {
         ("contacts: {foot: {link: z_lnik}}", "contacts.foot.link", "z_lnik", "`z_link`"),
         ("contacts: {foot: {link: base}}", "contacts.foot.link", "does not move", "name a link that moves"),
         ("constraints: {pin: {link: zlink, directions: point}}", "constraints.pin.link", "zlink", "`z_link`"),
-        ("constraints: {pin: {link: z_link, to: {link: y_lnk}, directions: point}}", "constraints.pin.to.link", "y_lnk", "`y_link`"),
+        ("constraints: {pin: {link: z_link, to: {link: acros_link}, directions: point}}", "constraints.pin.to.link", "acros_link", "`across_link`"),
         ("constraints: {pin: {link: z_link, directions: []}}", "constraints.pin.directions", "nothing is held", "list a direction"),
         ("constraints: {pin: {link: z_link, to: {link: z_link}, directions: point}}", "constraints.pin", "never move", "name links"),
         ("couplings: {rope: {joint: w, follows: x, ratio: 1}}", "couplings.rope.joint", "`w`", "nearest"),

@@ -17,7 +17,7 @@ fn on_ground(more: &str) -> Run {
 fn sliding_mass_stops_at_its_closed_form_time_and_place() {
     let speed = 1.5;
     for (cx, cy) in [(1.0, 0.0), (0.0, -1.0), (0.6, 0.8), (-0.8, 0.6)] {
-        let run = on_ground(&format!("initial: {{qd: {{x: {}, y: {}}}}}", speed * cx, speed * cy));
+        let run = on_ground(&format!("initial: {{qd: {{x: {}, across: {}}}}}", speed * cx, speed * cy));
         let [event] = run.summary.events[..] else { panic!("{:?}", run.summary.events) };
         assert_eq!(event.kind, EventKind::Stick);
         assert_near("time", event.t, speed / (FRICTION * G), 1e-9);
@@ -74,6 +74,7 @@ fn mass_that_is_turned_round_does_not_stick_on_the_way() {
         0.6 * force
     ));
     assert!(run.summary.events.is_empty(), "{:?}", run.summary.events);
+    assert_near("speed", run.samples[0].qd[0], 1.0, 0.0);
     for sample in &run.samples {
         let touch = run.touch(sample, "foot");
         let speed = sample.qd[0].hypot(sample.qd[1]);
