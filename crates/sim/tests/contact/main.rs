@@ -1,0 +1,11 @@
+//! Laws of robots that the ground, their own loops or couplings hold.
+
+mod bounces;
+mod energy;
+mod held;
+mod machines;
+mod refusals;
+mod rotors;
+mod slides;
+mod stands;
+mod steps;
