@@ -98,8 +98,7 @@ impl Contacts {
                     (excess > EXCESS * (1.0 + friction.norm())).then_some((Broken::Friction(direction), excess))
                 }
                 Mode::Slip => {
-                    let forward = along(velocity).dot(self.points[*i].direction);
-                    (forward < 0.0).then_some((Broken::Reversed, f64::MIN_POSITIVE))
+                    self.points[*i].turned(along(velocity)).then_some((Broken::Reversed, f64::MIN_POSITIVE))
                 }
                 Mode::Open => None,
             };

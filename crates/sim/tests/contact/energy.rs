@@ -18,7 +18,6 @@ fn total(sample: &Sample) -> f64 {
 #[test]
 fn energy_never_grows_at_plastic_impacts_and_under_friction() {
     for friction in [0.0, 0.3, 1.0] {
-        eprintln!("friction {friction}");
         let run = fallen(&format!("friction: {friction}"));
         assert!(!run.summary.events.is_empty());
         let scale = total(&run.samples[0]).abs();
