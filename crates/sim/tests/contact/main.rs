@@ -3,6 +3,7 @@
 mod bounces;
 mod energy;
 mod held;
+mod loops;
 mod machines;
 mod refusals;
 mod rotors;

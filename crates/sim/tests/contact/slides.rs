@@ -91,3 +91,23 @@ fn mass_that_is_thrown_up_from_the_ground_flies() {
     assert_eq!(event.kind, EventKind::TouchDown);
     assert_near("time", event.t, 2.0 * 2.0 / G, 1e-9);
 }
+
+#[test]
+fn pull_beyond_the_weight_lifts_off_and_accelerates_by_the_difference() {
+    let run = on_ground(&format!("wrenches: [{{link: z_link, force: [0, 0, {}], start: 0.1}}]", 1.2 * MASS * G));
+    let [event] = run.summary.events[..] else { panic!("{:?}", run.summary.events) };
+    assert_eq!(event.kind, EventKind::LiftOff);
+    assert_near("time", event.t, 0.1, 1e-9);
+    assert_near("height", run.last().q[2], 0.5 * 0.2 * G * 0.9 * 0.9, 1e-9);
+}
+
+/// Once pushed off it goes on while the push is gone, and stops like any other.
+#[test]
+fn pushed_mass_stops_when_friction_has_taken_its_momentum() {
+    let (force, span) = (2.5 * FRICTION * MASS * G, 0.1);
+    let run = on_ground(&format!("wrenches: [{{link: z_link, force: [{force}, 0, 0], start: 0.1, end: 0.2}}]"));
+    let kinds: Vec<EventKind> = run.summary.events.iter().map(|e| e.kind).collect();
+    assert_eq!(kinds, [EventKind::Slip, EventKind::Stick]);
+    // All the impulse of the push is friction's in the end.
+    assert_near("time", run.summary.events[1].t, 0.1 + force * span / (FRICTION * MASS * G), 1e-9);
+}
