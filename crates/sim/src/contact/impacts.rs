@@ -99,7 +99,11 @@ impl Contacts {
         // Each point may slip, and then leave; more changes would go in a circle.
         for _ in 0..=2 * felt.len() {
             (state.qd.clone_from(&before.0), state.thetad.clone_from(&before.1));
-            self.impact(&felt, &ways, dynamics, state)?;
+            let approach = self.impact(&felt, &ways, dynamics, state)?;
+            // What rocks to rest from foot to foot would do so without end: the last of it is held.
+            if approach <= ground.resting_speed {
+                break;
+            }
             match self.unlikely(&felt, &ways, width, ground.friction) {
                 Some((k, way)) => ways[k] = way,
                 None => break,
@@ -136,15 +140,15 @@ impl Contacts {
         Ok(())
     }
 
-    /// The impact with every closed contact on its way; `self.closed` is then without those that leave.
+    /// The impact with every closed contact on its way; `self.closed` is then without those that leave. Returns the largest speed of approach [m/s].
     fn impact(
         &mut self,
         felt: &[usize],
         ways: &[Way],
         dynamics: &mut Dynamics,
         state: &mut StateVec,
-    ) -> Result<(), Error> {
-        let Some(ground) = self.ground else { return Ok(()) };
+    ) -> Result<f64, Error> {
+        let Some(ground) = self.ground else { return Ok(0.0) };
         self.closed.clear();
         for (i, way) in felt.iter().zip(ways) {
             match way {
@@ -156,15 +160,17 @@ impl Contacts {
         }
         self.refresh();
         self.measure(dynamics, state.view())?;
-        let (permanent, mut row) = (self.permanent.len(), self.permanent_rows());
+        let (permanent, mut row, mut fastest) = (self.permanent.len(), self.permanent_rows(), 0.0_f64);
         for k in 0..self.closed.len() {
             row += self.constraints[permanent + k].rows();
             let approach = -self.velocities[row - 1];
+            fastest = fastest.max(approach);
             if let Some(contact) = &mut self.constraints[permanent + k].contact {
                 contact.restitution = if approach > ground.resting_speed { ground.restitution } else { 0.0 };
             }
         }
-        self.blow(dynamics, state, false).map(drop)
+        self.blow(dynamics, state, false)?;
+        Ok(fastest)
     }
 
     /// A contact whose impulse is not one of its way, and the way that it should go instead: friction that is asked for too much of lets it slip,
