@@ -167,10 +167,13 @@ impl Contacts {
         self.blow(dynamics, state, false).map(drop)
     }
 
-    /// A contact whose impulse is not one of its way, and the way that it should go instead: friction that is asked for too much of lets it slip,
-    /// and what would still pull lets go.
+    /// A contact whose impulse is not one of its way, and the way that it should go instead: friction that is asked for too much of lets it slip, the most
+    /// exceeded first. What would pull lets go, the one that pulls most, but only when friction is as it can be: where one point is held by more than
+    /// that, another one may seem to pull that does not.
     fn unlikely(&self, felt: &[usize], ways: &[Way], width: usize, friction: f64) -> Option<(usize, Way)> {
         let mut row = self.permanent_rows();
+        let (mut slips, mut leaves): (Option<(usize, Way)>, Option<usize>) = (None, None);
+        let (mut most, mut least) = (0.0, 0.0);
         for (k, way) in ways.iter().enumerate().take(felt.len()) {
             if *way == Way::Leave {
                 continue;
@@ -179,15 +182,17 @@ impl Contacts {
             row += width;
             let along = if width == 2 { Vec3::new(p[0], 0.0, 0.0) } else { Vec3::new(p[0], p[1], 0.0) };
             let (normal, size) = (p[width - 1], along.norm());
-            match way {
-                Way::Stick if size > friction * normal.max(0.0) * (1.0 + 1e-9) => {
-                    return Some((k, Way::Slip(along.scale(-1.0 / size))));
-                }
-                _ if normal < 0.0 => return Some((k, Way::Leave)),
-                _ => {}
+            let excess = size - friction * normal.max(0.0) * (1.0 + 1e-9);
+            if *way == Way::Stick && excess > most {
+                most = excess;
+                slips = Some((k, Way::Slip(along.scale(-1.0 / size))));
+            }
+            if normal < least {
+                least = normal;
+                leaves = Some(k);
             }
         }
-        None
+        slips.or(leaves.map(|k| (k, Way::Leave)))
     }
 
     /// An impact of all that is held; velocities jump.
