@@ -93,16 +93,23 @@ impl Contacts {
             self.points[i].close(at, ground.height);
         }
         let width = if ground.planar { 2 } else { 3 };
+        self.refresh();
+        self.measure(dynamics, state.view())?;
+        // A body that rocks from foot to foot ever faster comes to rest: where the blow is as slow as that, no foot leaves by it.
+        let leaving = -self.off_ground(contact) > ground.resting_speed;
         let before = (state.qd.clone(), state.thetad.clone());
         let felt = self.closed.clone();
         let mut ways = vec![Way::Stick; felt.len()];
-        // Each point may slip, and then leave; more changes would go in a circle.
-        for _ in 0..=2 * felt.len() {
+        // Each point may slip, leave, and be caught again with others gone; more changes would go in a circle.
+        for _ in 0..=4 * felt.len() {
             (state.qd.clone_from(&before.0), state.thetad.clone_from(&before.1));
             self.impact(&felt, &ways, dynamics, state)?;
-            match self.unlikely(&felt, &ways, width, ground.friction) {
+            match self.unlikely(&felt, &ways, width, (ground.friction, leaving)) {
                 Some((k, way)) => ways[k] = way,
-                None => break,
+                None => match self.still_coming(&felt, &ways, width, dynamics, state)? {
+                    Some(k) => ways[k] = Way::Stick,
+                    None => break,
+                },
             }
         }
         self.measure(dynamics, state.view())?;
@@ -170,7 +177,7 @@ impl Contacts {
     /// A contact whose impulse is not one of its way, and the way that it should go instead: friction that is asked for too much of lets it slip, the most
     /// exceeded first. What would pull lets go, the one that pulls most, but only when friction is as it can be: where one point is held by more than
     /// that, another one may seem to pull that does not.
-    fn unlikely(&self, felt: &[usize], ways: &[Way], width: usize, friction: f64) -> Option<(usize, Way)> {
+    fn unlikely(&self, felt: &[usize], ways: &[Way], width: usize, (friction, leaving): (f64, bool)) -> Option<(usize, Way)> {
         let mut row = self.permanent_rows();
         let (mut slips, mut leaves): (Option<(usize, Way)>, Option<usize>) = (None, None);
         let (mut most, mut least) = (0.0, 0.0);
@@ -187,12 +194,39 @@ impl Contacts {
                 most = excess;
                 slips = Some((k, Way::Slip(along.scale(-1.0 / size))));
             }
-            if normal < least {
+            if leaving && normal < least {
                 least = normal;
                 leaves = Some(k);
             }
         }
         slips.or(leaves.map(|k| (k, Way::Leave)))
+    }
+
+    /// A point that was let go and comes down nevertheless.
+    fn still_coming(
+        &mut self,
+        felt: &[usize],
+        ways: &[Way],
+        width: usize,
+        dynamics: &mut Dynamics,
+        state: &StateVec,
+    ) -> Result<Option<usize>, Error> {
+        if !ways.contains(&Way::Leave) {
+            return Ok(None);
+        }
+        let kept = core::mem::replace(&mut self.closed, felt.to_vec());
+        self.refresh();
+        self.measure(dynamics, state.view())?;
+        let (permanent, mut fastest, mut found) = (self.permanent_rows(), -LEAVES, None);
+        for (k, way) in ways.iter().enumerate() {
+            let off = self.velocities[permanent + (k + 1) * width - 1];
+            if *way == Way::Leave && off < fastest {
+                (fastest, found) = (off, Some(k));
+            }
+        }
+        self.closed = kept;
+        self.refresh();
+        Ok(found)
     }
 
     /// An impact of all that is held; velocities jump.
