@@ -93,20 +93,23 @@ impl Contacts {
             self.points[i].close(at, ground.height);
         }
         let width = if ground.planar { 2 } else { 3 };
+        self.refresh();
+        self.measure(dynamics, state.view())?;
+        // A body that rocks from foot to foot ever faster comes to rest: where the blow is as slow as that, no foot leaves by it.
+        let leaving = -self.off_ground(contact) > ground.resting_speed;
         let before = (state.qd.clone(), state.thetad.clone());
         let felt = self.closed.clone();
         let mut ways = vec![Way::Stick; felt.len()];
-        // Each point may slip, and then leave; more changes would go in a circle.
-        for _ in 0..=2 * felt.len() {
+        // Each point may slip, leave, and be caught again with others gone; more changes would go in a circle.
+        for _ in 0..=4 * felt.len() {
             (state.qd.clone_from(&before.0), state.thetad.clone_from(&before.1));
-            let approach = self.impact(&felt, &ways, dynamics, state)?;
-            // What rocks to rest from foot to foot would do so without end: the last of it is held.
-            if approach <= ground.resting_speed {
-                break;
-            }
-            match self.unlikely(&felt, &ways, width, ground.friction) {
+            self.impact(&felt, &ways, dynamics, state)?;
+            match self.unlikely(&felt, &ways, width, (ground.friction, leaving)) {
                 Some((k, way)) => ways[k] = way,
-                None => break,
+                None => match self.still_coming(&felt, &ways, width, dynamics, state)? {
+                    Some(k) => ways[k] = Way::Stick,
+                    None => break,
+                },
             }
         }
         self.measure(dynamics, state.view())?;
@@ -140,15 +143,15 @@ impl Contacts {
         Ok(())
     }
 
-    /// The impact with every closed contact on its way; `self.closed` is then without those that leave. Returns the largest speed of approach [m/s].
+    /// The impact with every closed contact on its way; `self.closed` is then without those that leave.
     fn impact(
         &mut self,
         felt: &[usize],
         ways: &[Way],
         dynamics: &mut Dynamics,
         state: &mut StateVec,
-    ) -> Result<f64, Error> {
-        let Some(ground) = self.ground else { return Ok(0.0) };
+    ) -> Result<(), Error> {
+        let Some(ground) = self.ground else { return Ok(()) };
         self.closed.clear();
         for (i, way) in felt.iter().zip(ways) {
             match way {
@@ -160,23 +163,24 @@ impl Contacts {
         }
         self.refresh();
         self.measure(dynamics, state.view())?;
-        let (permanent, mut row, mut fastest) = (self.permanent.len(), self.permanent_rows(), 0.0_f64);
+        let (permanent, mut row) = (self.permanent.len(), self.permanent_rows());
         for k in 0..self.closed.len() {
             row += self.constraints[permanent + k].rows();
             let approach = -self.velocities[row - 1];
-            fastest = fastest.max(approach);
             if let Some(contact) = &mut self.constraints[permanent + k].contact {
                 contact.restitution = if approach > ground.resting_speed { ground.restitution } else { 0.0 };
             }
         }
-        self.blow(dynamics, state, false)?;
-        Ok(fastest)
+        self.blow(dynamics, state, false).map(drop)
     }
 
-    /// A contact whose impulse is not one of its way, and the way that it should go instead: friction that is asked for too much of lets it slip,
-    /// and what would still pull lets go.
-    fn unlikely(&self, felt: &[usize], ways: &[Way], width: usize, friction: f64) -> Option<(usize, Way)> {
+    /// A contact whose impulse is not one of its way, and the way that it should go instead: friction that is asked for too much of lets it slip, the most
+    /// exceeded first. What would pull lets go, the one that pulls most, but only when friction is as it can be: where one point is held by more than
+    /// that, another one may seem to pull that does not.
+    fn unlikely(&self, felt: &[usize], ways: &[Way], width: usize, (friction, leaving): (f64, bool)) -> Option<(usize, Way)> {
         let mut row = self.permanent_rows();
+        let (mut slips, mut leaves): (Option<(usize, Way)>, Option<usize>) = (None, None);
+        let (mut most, mut least) = (0.0, 0.0);
         for (k, way) in ways.iter().enumerate().take(felt.len()) {
             if *way == Way::Leave {
                 continue;
@@ -185,15 +189,44 @@ impl Contacts {
             row += width;
             let along = if width == 2 { Vec3::new(p[0], 0.0, 0.0) } else { Vec3::new(p[0], p[1], 0.0) };
             let (normal, size) = (p[width - 1], along.norm());
-            match way {
-                Way::Stick if size > friction * normal.max(0.0) * (1.0 + 1e-9) => {
-                    return Some((k, Way::Slip(along.scale(-1.0 / size))));
-                }
-                _ if normal < 0.0 => return Some((k, Way::Leave)),
-                _ => {}
+            let excess = size - friction * normal.max(0.0) * (1.0 + 1e-9);
+            if *way == Way::Stick && excess > most {
+                most = excess;
+                slips = Some((k, Way::Slip(along.scale(-1.0 / size))));
+            }
+            if leaving && normal < least {
+                least = normal;
+                leaves = Some(k);
             }
         }
-        None
+        slips.or(leaves.map(|k| (k, Way::Leave)))
+    }
+
+    /// A point that was let go and comes down nevertheless.
+    fn still_coming(
+        &mut self,
+        felt: &[usize],
+        ways: &[Way],
+        width: usize,
+        dynamics: &mut Dynamics,
+        state: &StateVec,
+    ) -> Result<Option<usize>, Error> {
+        if !ways.contains(&Way::Leave) {
+            return Ok(None);
+        }
+        let kept = core::mem::replace(&mut self.closed, felt.to_vec());
+        self.refresh();
+        self.measure(dynamics, state.view())?;
+        let (permanent, mut fastest, mut found) = (self.permanent_rows(), -LEAVES, None);
+        for (k, way) in ways.iter().enumerate() {
+            let off = self.velocities[permanent + (k + 1) * width - 1];
+            if *way == Way::Leave && off < fastest {
+                (fastest, found) = (off, Some(k));
+            }
+        }
+        self.closed = kept;
+        self.refresh();
+        Ok(found)
     }
 
     /// An impact of all that is held; velocities jump.
