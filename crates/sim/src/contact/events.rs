@@ -97,9 +97,7 @@ impl Contacts {
                     let direction = friction.scale(-1.0 / friction.norm().max(f64::MIN_POSITIVE));
                     (excess > EXCESS * (1.0 + friction.norm())).then_some((Broken::Friction(direction), excess))
                 }
-                Mode::Slip => {
-                    self.points[*i].turned(along(velocity)).then_some((Broken::Reversed, f64::MIN_POSITIVE))
-                }
+                Mode::Slip => self.points[*i].turned(along(velocity)).then_some((Broken::Reversed, f64::MIN_POSITIVE)),
                 Mode::Open => None,
             };
             // What would pull goes first, then what exceeds its friction most.

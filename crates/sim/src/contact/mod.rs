@@ -261,8 +261,7 @@ impl Contacts {
 
     /// Errors and velocities of all that is held.
     fn measure(&mut self, dynamics: &mut Dynamics, state: State<f64>) -> Result<(), Error> {
-        let out =
-            ConstraintMotion { error: &mut self.errors, velocity: &mut self.velocities, jacobian: &mut [] };
+        let out = ConstraintMotion { error: &mut self.errors, velocity: &mut self.velocities, jacobian: &mut [] };
         dynamics.constraint_motion(state.q, state.qd, &self.constraints, out)
     }
 
@@ -351,7 +350,8 @@ impl Contacts {
             let inertia = body.inertia;
             let link = body.frame.inverse().after(*pose);
             mass += inertia.mass;
-            moment += link.point(inertia.first_moment.scale(1.0 / inertia.mass.max(f64::MIN_POSITIVE))).scale(inertia.mass);
+            moment +=
+                link.point(inertia.first_moment.scale(1.0 / inertia.mass.max(f64::MIN_POSITIVE))).scale(inertia.mass);
         }
         out.center_of_mass = moment.scale(1.0 / mass).to_array();
         out.contacts.resize(self.points.len(), Touch::default());
@@ -359,11 +359,8 @@ impl Contacts {
         let (mut load, mut at) = (0.0, [-couple.y, couple.x]);
         for i in 0..self.points.len() {
             let (place, force) = (self.points[i].place(&self.poses), self.force(i));
-            out.contacts[i] = Touch {
-                force: force.to_array(),
-                gap: place.z - height,
-                mode: self.points[i].mode.number(),
-            };
+            out.contacts[i] =
+                Touch { force: force.to_array(), gap: place.z - height, mode: self.points[i].mode.number() };
             load += force.z;
             at[0] += place.x * force.z;
             at[1] += place.y * force.z;
@@ -397,6 +394,7 @@ fn chatter(t: f64, name: &str) -> Error {
         file: String::new(),
         element: format!("contact `{name}`"),
         problem: format!("at t = {t} s it opens and closes without end"),
-        remedy: "raise `ground.resting_speed`, lower `ground.restitution`, or drive the robot less violently".to_owned(),
+        remedy: "raise `ground.resting_speed`, lower `ground.restitution`, or drive the robot less violently"
+            .to_owned(),
     }
 }

@@ -46,7 +46,10 @@ fn pin_does_not_drift() {
 }
 
 fn sliders(ratio: f64) -> Robot {
-    let parts = [("a", "prismatic", "0 0 1", inertial(1.0, 0.0, 0.0, 0.01)), ("b", "prismatic", "0 0 1", inertial(3.0, 0.0, 0.0, 0.01))];
+    let parts = [
+        ("a", "prismatic", "0 0 1", inertial(1.0, 0.0, 0.0, 0.01)),
+        ("b", "prismatic", "0 0 1", inertial(3.0, 0.0, 0.0, 0.01)),
+    ];
     side_by_side(&parts, &format!("couplings:\n  rope: {{joint: b, follows: a, ratio: {ratio}, offset: 0.1}}\n"))
 }
 

@@ -59,8 +59,11 @@ pub fn side_by_side(parts: &[Part], yaml: &str) -> Robot {
 /// URDF of a mass that moves along x, y and z.
 pub fn mass_urdf() -> String {
     let none = String::new;
-    let parts =
-        [("x", "prismatic", "1 0 0", none()), ("across", "prismatic", "0 1 0", none()), ("z", "prismatic", "0 0 1", inertial(MASS, 0.0, 0.0, 0.01))];
+    let parts = [
+        ("x", "prismatic", "1 0 0", none()),
+        ("across", "prismatic", "0 1 0", none()),
+        ("z", "prismatic", "0 0 1", inertial(MASS, 0.0, 0.0, 0.01)),
+    ];
     urdf(&parts, true)
 }
 
@@ -76,8 +79,11 @@ pub const ABOUT_MIDDLE: f64 = MASS * HALF * HALF / 3.0;
 /// A body that moves freely in the plane of x and z and turns about y.
 pub fn planar(inertial: String, yaml: &str) -> Robot {
     let none = String::new;
-    let parts =
-        [("x", "prismatic", "1 0 0", none()), ("z", "prismatic", "0 0 1", none()), ("pitch", "continuous", "0 1 0", inertial)];
+    let parts = [
+        ("x", "prismatic", "1 0 0", none()),
+        ("z", "prismatic", "0 0 1", none()),
+        ("pitch", "continuous", "0 1 0", inertial),
+    ];
     chain(&parts, yaml)
 }
 
@@ -90,7 +96,8 @@ pub fn rod() -> Robot {
 }
 
 pub fn scenario(yaml: &str) -> ScenarioFile {
-    ScenarioFile::parse(&format!("robot: machine.yaml\n{yaml}"), Path::new("test.yaml")).unwrap_or_else(|e| panic!("{e}"))
+    ScenarioFile::parse(&format!("robot: machine.yaml\n{yaml}"), Path::new("test.yaml"))
+        .unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// What a run left behind.

@@ -32,7 +32,10 @@ fn ground_needs_contacts() {
 
 #[test]
 fn adaptive_steps_cannot_hold_a_robot() {
-    says(&refused(&mass(), "ground: {friction: 0.5}\nintegrator: {method: dopri5}"), &["integrator.method", "`dopri5`", "`rk4`"]);
+    says(
+        &refused(&mass(), "ground: {friction: 0.5}\nintegrator: {method: dopri5}"),
+        &["integrator.method", "`dopri5`", "`rk4`"],
+    );
 }
 
 fn pinned(constraints: &str) -> Robot {
@@ -60,11 +63,31 @@ fn unknown_and_useless_names_are_refused_with_key_and_remedy() {
         ("contacts: {foot: {link: z_lnik}}", "contacts.foot.link", "z_lnik", "`z_link`"),
         ("contacts: {foot: {link: base}}", "contacts.foot.link", "does not move", "name a link that moves"),
         ("constraints: {pin: {link: zlink, directions: point}}", "constraints.pin.link", "zlink", "`z_link`"),
-        ("constraints: {pin: {link: z_link, to: {link: acros_link}, directions: point}}", "constraints.pin.to.link", "acros_link", "`across_link`"),
-        ("constraints: {pin: {link: z_link, directions: []}}", "constraints.pin.directions", "nothing is held", "list a direction"),
-        ("constraints: {pin: {link: z_link, to: {link: z_link}, directions: point}}", "constraints.pin", "never move", "name links"),
+        (
+            "constraints: {pin: {link: z_link, to: {link: acros_link}, directions: point}}",
+            "constraints.pin.to.link",
+            "acros_link",
+            "`across_link`",
+        ),
+        (
+            "constraints: {pin: {link: z_link, directions: []}}",
+            "constraints.pin.directions",
+            "nothing is held",
+            "list a direction",
+        ),
+        (
+            "constraints: {pin: {link: z_link, to: {link: z_link}, directions: point}}",
+            "constraints.pin",
+            "never move",
+            "name links",
+        ),
         ("couplings: {rope: {joint: w, follows: x, ratio: 1}}", "couplings.rope.joint", "`w`", "nearest"),
-        ("couplings: {rope: {joint: x, follows: x, ratio: 1}}", "couplings.rope.follows", "follows itself", "another joint"),
+        (
+            "couplings: {rope: {joint: x, follows: x, ratio: 1}}",
+            "couplings.rope.follows",
+            "follows itself",
+            "another joint",
+        ),
     ];
     for (yaml, key, problem, remedy) in cases {
         let error = try_load(&mass_urdf(), &format!("{yaml}\n")).expect_err("this must be refused");

@@ -7,8 +7,11 @@ const CORNERS: [[f64; 2]; 4] = [[0.2, 0.1], [0.2, -0.1], [-0.2, 0.1], [-0.2, -0.
 
 pub fn table(legs: usize) -> Robot {
     let urdf = format!("<robot name=\"machine\"><link name=\"top\">{}</link></robot>", inertial(MASS, 0.05, 0.3, 0.02));
-    let feet: Vec<String> =
-        CORNERS[..legs].iter().enumerate().map(|(i, [x, y])| format!("  foot{i}: {{link: top, point: [{x}, {y}, 0]}}\n")).collect();
+    let feet: Vec<String> = CORNERS[..legs]
+        .iter()
+        .enumerate()
+        .map(|(i, [x, y])| format!("  foot{i}: {{link: top, point: [{x}, {y}, 0]}}\n"))
+        .collect();
     try_load(&urdf, &format!("floating: true\ncontacts:\n{}", feet.concat())).unwrap_or_else(|e| panic!("{e}"))
 }
 
