@@ -91,16 +91,14 @@ impl Contacts {
             let along = |v: &[f64]| if width == 2 { Vec3::new(v[0], 0.0, 0.0) } else { Vec3::new(v[0], v[1], 0.0) };
             let (normal, friction) = (force[width - 1], along(force));
             let found = match self.points[*i].mode {
-                // What sticks and pulls may push when it slips.
-                Mode::Stick
-                    if friction.norm() - ground.friction * normal.max(0.0) > EXCESS * (1.0 + friction.norm()) =>
-                {
-                    let direction = friction.scale(-1.0 / friction.norm());
-                    Some((Broken::Friction(direction), friction.norm() - ground.friction * normal))
-                }
                 _ if normal < -EXCESS => Some((Broken::Pull, -normal)),
+                Mode::Stick => {
+                    let excess = friction.norm() - ground.friction * normal.max(0.0);
+                    let direction = friction.scale(-1.0 / friction.norm().max(f64::MIN_POSITIVE));
+                    (excess > EXCESS * (1.0 + friction.norm())).then_some((Broken::Friction(direction), excess))
+                }
                 Mode::Slip => self.points[*i].turned(along(velocity)).then_some((Broken::Reversed, f64::MIN_POSITIVE)),
-                Mode::Open | Mode::Stick => None,
+                Mode::Open => None,
             };
             // What would pull goes first, then what exceeds its friction most.
             let rank = |b: &Broken| match b {

@@ -177,7 +177,13 @@ impl Contacts {
     /// A contact whose impulse is not one of its way, and the way that it should go instead: friction that is asked for too much of lets it slip, the most
     /// exceeded first. What would pull lets go, the one that pulls most, but only when friction is as it can be: where one point is held by more than
     /// that, another one may seem to pull that does not.
-    fn unlikely(&self, felt: &[usize], ways: &[Way], width: usize, (friction, leaving): (f64, bool)) -> Option<(usize, Way)> {
+    fn unlikely(
+        &self,
+        felt: &[usize],
+        ways: &[Way],
+        width: usize,
+        (friction, leaving): (f64, bool),
+    ) -> Option<(usize, Way)> {
         let mut row = self.permanent_rows();
         let (mut slips, mut leaves): (Option<(usize, Way)>, Option<usize>) = (None, None);
         let (mut most, mut least) = (0.0, 0.0);
