@@ -102,7 +102,8 @@ impl Contacts {
         let mut ways = vec![Way::Stick; felt.len()];
         // Each point may slip, leave, and be caught again with others gone; more changes would go in a circle.
         for _ in 0..=4 * felt.len() {
-            (state.qd.clone_from(&before.0), state.thetad.clone_from(&before.1));
+            state.qd.clone_from(&before.0);
+            state.thetad.clone_from(&before.1);
             self.impact(&felt, &ways, dynamics, state)?;
             match self.unlikely(&felt, &ways, width, (ground.friction, leaving)) {
                 Some((k, way)) => ways[k] = way,
