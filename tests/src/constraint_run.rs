@@ -2,6 +2,7 @@
 
 use crate::Core;
 use crate::core_run::{cast, double, nan};
+use gyroflex::control::{ComputedTorque, HeldScratch, Joints};
 use gyroflex::dynamics::{
     AbaScratch, Acceleration, Anchor, Constrained, ConstrainedScratch, Constraint, ConstraintMotion, ConstraintScratch,
     Contact, Forward, Frame, Hold, Impact, Inverse, JointSpaceScratch, PropagatedScratch, Regularisation, RneaScratch,
@@ -219,6 +220,42 @@ impl<T: Real> Core<T> {
             .expect("the constraints fit the robot")
         });
         [double(&tau_j), double(&tau), double(&multipliers)]
+    }
+
+    /// `ComputedTorque::torque_while_held` with the same gains `kp`, `kd` at all joints, towards positions and velocities `desired` with the
+    /// accelerations `qdd`: motor torques.
+    pub fn computed_torque_while_held(
+        &self,
+        s: &Point,
+        held: &Held,
+        [kp, kd]: [f64; 2],
+        desired: [&[f64]; 2],
+        qdd: &[f64],
+    ) -> Vec<f64> {
+        let (model, nv, constraints) = (self.model(), self.model().nv(), held.cast::<T>());
+        let mut bodies = vec![RneaScratch::new(); model.bodies().len()];
+        let mut supports = vec![SupportScratch::new(); model.bodies().len()];
+        let mut matrix = vec![nan(); constrained_inverse_len(&model, &constraints, 0)];
+        let (mut tau_j, mut tau, mut multipliers) = (vec![nan(); nv], vec![nan(); nv], vec![nan(); held.rows()]);
+        let (kp, kd, ones) = (vec![T::from_f64(kp); nv], vec![T::from_f64(kd); nv], vec![T::from_f64(1.0); nv]);
+        let costs = vec![T::from_f64(1e-6); held.rows()];
+        let [q, qd, aims, rates] = [&s.q, &s.qd, desired[0], desired[1]].map(cast::<T>);
+        let mut qdd = cast::<T>(qdd);
+        let law = ComputedTorque { kp: &kp, kd: &kd };
+        law.torque_while_held(
+            &model,
+            Joints { q: &aims, qd: &rates },
+            Joints { q: &q, qd: &qd },
+            &mut qdd,
+            &constraints,
+            TorqueDistribution { torques: &ones, passive: &[], multipliers: &costs, wanted: &[] },
+            held.regularisation(),
+            HeldScratch { bodies: &mut bodies, supports: &mut supports, matrix: &mut matrix },
+            Inverse { tau_j: &mut tau_j, tau: &mut tau },
+            &mut multipliers,
+        )
+        .expect("the constraints fit the robot");
+        double(&tau)
     }
 
     /// `constraint_motion`: errors, velocities, and the Jacobian by rows.

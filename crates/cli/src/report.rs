@@ -1,6 +1,7 @@
 //! The summary of a run, for people and for programs.
 
 use gyroflex_sim::Summary;
+use gyroflex_sim::contact::EventKind;
 use gyroflex_sim::error::Error;
 use std::fmt::Write;
 use std::path::Path;
@@ -48,6 +49,18 @@ impl Report<'_> {
         }
         if let Some(drift) = s.energy_drift {
             let _ = writeln!(out, "energy drift {drift:.1e} of the largest kinetic energy");
+        }
+        if let Some(drift) = s.constraint_drift {
+            let of = |kind| s.events.iter().filter(|e| e.kind == kind).count();
+            let (down, off) = (of(EventKind::TouchDown) + of(EventKind::Bounce), of(EventKind::LiftOff));
+            if !s.contacts.is_empty() {
+                let (slip, stick) = (of(EventKind::Slip), of(EventKind::Stick));
+                let _ = writeln!(
+                    out,
+                    "contacts: {down} touch-downs, {off} lift-offs, {slip} began to slip, {stick} stuck again"
+                );
+            }
+            let _ = writeln!(out, "largest error of what was held {drift:.1e} m or rad");
         }
         let _ = write!(out, "log: {} ({} samples)", self.log.display(), s.samples);
         if let Some(csv) = self.csv {

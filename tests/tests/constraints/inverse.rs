@@ -95,3 +95,26 @@ fn no_other_distribution_costs_less() {
     });
     assert!(some.get() > 50, "only {} robots were balanced", some.get());
 }
+
+/// Errors that the constraints allow are answered by the gains as if nothing were held; all others the constraints take up.
+#[test]
+fn computed_torque_lets_allowed_errors_decay_as_without_constraints() {
+    let options = Options { floating: 0.0, friction: 0.0, ..Options::default() };
+    for_sticking::<f64>(200, &options, &RIGID, tol(1e-6, 0.0), |t, held| {
+        let s = State { tau_ext: Vec::new(), wrenches: Vec::new(), ..t.state.clone() };
+        let found = t.core.constrained(&s, held);
+        let [_, _, jacobian] = t.core.constraint_motion(&s.q, &s.qd, held);
+        let (nv, kp, kd) = (t.robot.nv(), 30.0, 7.0);
+        // A deviation across all constraints
+        let j = DMatrix::from_row_slice(held.rows(), nv, &jacobian);
+        let any = DVector::from_fn(nv, |k, _| ((3 * k + 1) as f64).sin());
+        let normal = (&j * j.transpose()).cholesky().expect("independent constraints");
+        let e = &any - j.transpose() * normal.solve(&(&j * &any));
+        let desired: Vec<f64> = s.q.iter().zip(e.iter()).map(|(q, e)| q + e).collect();
+        let rates: Vec<f64> = s.qd.iter().zip(e.iter()).map(|(qd, e)| qd - 0.5 * e).collect();
+        let tau = t.core.computed_torque_while_held(&s, held, [kp, kd], [&desired, &rates], &found.links);
+        let got = t.core.constrained(&State { tau, ..s.clone() }, held).links;
+        let want: Vec<f64> = found.links.iter().zip(e.iter()).map(|(a, e)| a + (kp - 0.5 * kd) * e).collect();
+        t.assert_close("accelerations", &got, &want, 0.0);
+    });
+}

@@ -1,7 +1,10 @@
 //! Inverse dynamics of a rigid model around a desired motion.
 
 use crate::Scalar;
-use crate::dynamics::{Acceleration, External, Inverse, RneaScratch, State, rnea};
+use crate::dynamics::{
+    Acceleration, Constraint, ConstraintError, External, Inverse, Regularisation, RneaScratch, Solved, State,
+    SupportScratch, TorqueDistribution, constrained_inverse_dynamics, rnea,
+};
 use crate::model::{Model, SizeError};
 
 /// `τ = M (q̈_d + k_p (q_d − q) + k_d (q̇_d − q̇)) + C q̇ + g + friction` of a rigid model (Siciliano et al., §8.5.2): joints decoupled and
@@ -40,7 +43,56 @@ impl<T: Scalar> ComputedTorque<'_, T> {
         tau_j: &mut [T],
         tau: &mut [T],
     ) -> Result<(), SizeError> {
-        let nv = rigid.nv();
+        self.command(rigid.nv(), desired, measured, qdd)?;
+        let Joints { q, qd } = measured;
+        let accel = Acceleration { qdd, thetadd: qdd };
+        let state = State { q, qd, theta: qd, thetad: qd };
+        rnea(rigid, state, accel, External::none(), scratch, Inverse { tau_j, tau })
+    }
+
+    /// The same for a robot that something holds: of all torques that make the commanded motion, those that `distribution` asks for
+    /// ([`constrained_inverse_dynamics`]); nothing drives its passive velocities. What the command asks for along held directions, the constraints
+    /// take up: errors that the constraints allow decay as without them. `multipliers` are the forces of the constraints that go with it.
+    ///
+    /// # Errors
+    /// A slice that does not fit the model, a root that floats, or a constraint that does not fit.
+    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own")]
+    pub fn torque_while_held(
+        &self,
+        rigid: &Model<T::Param>,
+        desired: Joints<T>,
+        measured: Joints<T>,
+        qdd: &mut [T],
+        constraints: &[Constraint<T>],
+        distribution: TorqueDistribution<T>,
+        regularisation: Regularisation<T>,
+        scratch: HeldScratch<T>,
+        out: Inverse<T>,
+        multipliers: &mut [T],
+    ) -> Result<Solved<T>, ConstraintError> {
+        self.command(rigid.nv(), desired, measured, qdd)?;
+        let Joints { q, qd } = measured;
+        let accel = Acceleration { qdd, thetadd: qdd };
+        let state = State { q, qd, theta: qd, thetad: qd };
+        let HeldScratch { bodies, supports, matrix } = scratch;
+        constrained_inverse_dynamics(
+            rigid,
+            state,
+            accel,
+            External::none(),
+            constraints,
+            distribution,
+            regularisation,
+            bodies,
+            supports,
+            matrix,
+            out,
+            multipliers,
+        )
+    }
+
+    /// `q̈_d + k_p (q_d − q) + k_d (q̇_d − q̇)` in the place of `q̈_d`.
+    fn command(&self, nv: usize, desired: Joints<T>, measured: Joints<T>, qdd: &mut [T]) -> Result<(), SizeError> {
         let lengths = [
             ("kp", self.kp.len()),
             ("kd", self.kd.len()),
@@ -56,9 +108,17 @@ impl<T: Scalar> ComputedTorque<'_, T> {
             let (e, ed) = (of(desired.q) - of(measured.q), of(desired.qd) - of(measured.qd));
             *a = of(self.kp).mul_add(e, of(self.kd).mul_add(ed, *a));
         }
-        let Joints { q, qd } = measured;
-        let accel = Acceleration { qdd, thetadd: qdd };
-        let state = State { q, qd, theta: qd, thetad: qd };
-        rnea(rigid, state, accel, External::none(), scratch, Inverse { tau_j, tau })
+        Ok(())
     }
+}
+
+/// What [`ComputedTorque::torque_while_held`] works in.
+#[derive(Debug)]
+pub struct HeldScratch<'a, T> {
+    /// One record per body.
+    pub bodies: &'a mut [RneaScratch<T>],
+    /// One record per body.
+    pub supports: &'a mut [SupportScratch<T>],
+    /// [`constrained_inverse_len`](crate::dynamics::constrained_inverse_len) entries.
+    pub matrix: &'a mut [T],
 }

@@ -13,7 +13,7 @@ mod sliding_mode;
 mod state_feedback;
 mod two_dof;
 
-pub use computed_torque::{ComputedTorque, Joints};
+pub use computed_torque::{ComputedTorque, HeldScratch, Joints};
 pub use feedback_linearization::{FeedbackLinearization, LinearizationScratch};
 pub use low_pass::LowPass;
 pub use online_shaper::{OnlineShaper, memory_len};
