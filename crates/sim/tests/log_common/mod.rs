@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use gyroflex::spatial::{Mat3, Transform, Vec3};
-use gyroflex_sim::record::{RunInfo, Sample};
+use gyroflex_sim::record::{Footing, RunInfo, Sample, Touch};
 use std::path::PathBuf;
 
 /// A floating robot of three joints: elastic drive, rigid drive with a negative ratio, sliding joint without a drive.
@@ -15,6 +15,8 @@ pub fn info() -> RunInfo {
         gear_ratios: vec![Some(107.815), Some(-53.7063), None],
         frames: vec![pair("trunk", "world"), pair("upper_arm", "trunk"), pair("tool", "upper_arm")],
         floating: true,
+        held: true,
+        contacts: vec!["foot".to_owned()],
         urdf: "<robot name=\"made up\"/>".to_owned(),
         attachments: vec![pair("robot.urdf", "<robot name=\"made up\"/>"), pair("scenario.yaml", "duration: 1.0\n")],
         metadata: vec![pair("model", "complete"), pair("step", "0.0001")],
