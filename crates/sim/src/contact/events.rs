@@ -44,6 +44,9 @@ const BELOW: f64 = 1e-12;
 /// By how much friction may be exceeded before a point slips: rounding is not slip.
 const EXCESS: f64 = 1e-9;
 
+/// How fast a point is to slip backwards to have turned back [m/s]: rounding is not motion.
+const STANDSTILL: f64 = 1e-8;
+
 /// What a contact can no longer do as it did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Broken {
@@ -91,17 +94,19 @@ impl Contacts {
             let along = |v: &[f64]| if width == 2 { Vec3::new(v[0], 0.0, 0.0) } else { Vec3::new(v[0], v[1], 0.0) };
             let (normal, friction) = (force[width - 1], along(force));
             let found = match self.points[*i].mode {
-                _ if normal < -EXCESS => Some((Broken::Pull, -normal)),
-                Mode::Stick => {
-                    let excess = friction.norm() - ground.friction * normal.max(0.0);
-                    let direction = friction.scale(-1.0 / friction.norm().max(f64::MIN_POSITIVE));
-                    (excess > EXCESS * (1.0 + friction.norm())).then_some((Broken::Friction(direction), excess))
+                // What sticks and pulls may push when it slips.
+                Mode::Stick
+                    if friction.norm() - ground.friction * normal.max(0.0) > EXCESS * (1.0 + friction.norm()) =>
+                {
+                    let direction = friction.scale(-1.0 / friction.norm());
+                    Some((Broken::Friction(direction), friction.norm() - ground.friction * normal))
                 }
+                _ if normal < -EXCESS => Some((Broken::Pull, -normal)),
                 Mode::Slip => {
                     let forward = along(velocity).dot(self.points[*i].direction);
-                    (forward < 0.0).then_some((Broken::Reversed, f64::MIN_POSITIVE))
+                    (forward < -STANDSTILL).then_some((Broken::Reversed, f64::MIN_POSITIVE))
                 }
-                Mode::Open => None,
+                Mode::Open | Mode::Stick => None,
             };
             // What would pull goes first, then what exceeds its friction most.
             let rank = |b: &Broken| match b {
