@@ -14,9 +14,10 @@ fn robot(file: &str) -> Robot {
     load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-const ALL: [&str; 11] = [
+const ALL: [&str; 12] = [
     "biped5/robot.yaml",
     "biped5_elastic/robot.yaml",
+    "four_bar/robot.yaml",
     "iiwa14/robot.yaml",
     "iiwa14/lossless.yaml",
     "lwr/robot.yaml",

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import statistics
 import subprocess
 import sys
 import time
@@ -63,13 +64,14 @@ def library():
 
 def measure(options):
     started = datetime.now(timezone.utc)
-    workers = [Program(name, options.core) for name, _ in programs()]
+    names = [name for name, _ in programs() if not options.rows or (BIN / name).exists()]
+    workers = [Program(name, options.core) for name in names]
     ours = {family(row) for worker in workers if worker.name == "gyroflex" for row in worker.errors}
     # Rows of one robot and algorithm stand together, so that what is compared is measured within a tenth of a second.
     turns = defaultdict(list)
     for worker in workers:
         for row in worker.errors:
-            if family(row) in ours:
+            if family(row) in ours and options.rows in row:
                 turns[family(row)].append((worker, row))
     batches = defaultdict(list)
     load = os.getloadavg()[0]
@@ -88,6 +90,11 @@ def measure(options):
     rows = [{"program": program, "row": row, "error": errors[program, row],
              "fastest": [round(b[0], 2) for b in found], "middle": [round(b[1], 2) for b in found]}
             for (program, row), found in batches.items()]
+    if options.rows:
+        for entry in sorted(rows, key=lambda entry: family(entry["row"])):
+            middle = statistics.median(entry["middle"])
+            print(f"{entry['row']:40} {entry['program']:24} {min(entry['fastest']):10,.0f} ns, median {middle:10,.0f} ns")
+        return
     about = {"library": library(), "started": started.strftime("%Y-%m-%d %H:%M UTC"), "rounds": options.rounds, "core": options.core,
              "load": [round(load, 2), round(os.getloadavg()[0], 2)],
              "command": "benches/peers/run measure" + (f" --rounds {options.rounds}" if options.rounds != 100 else "")}

@@ -13,7 +13,8 @@ from measure import COUNTS, RESULTS, ROBOTS, family
 DOCUMENT = REPOSITORY / "docs/benchmarks.md"
 BEGIN, END = "<!-- measured by benches/peers/run: begin -->", "<!-- end -->"
 ALGORITHMS = {"aba": "forward dynamics", "rnea": "inverse dynamics", "crba": "inertia matrix", "fk": "link poses",
-              "aba_derivatives": "derivatives of forward dynamics", "rnea_derivatives": "derivatives of inverse dynamics"}
+              "aba_derivatives": "derivatives of forward dynamics", "rnea_derivatives": "derivatives of inverse dynamics",
+              "constrained": "forward dynamics on two feet"}
 PEERS = {"Pinocchio": "pinocchio", "MuJoCo": "mujoco", "dynibo": "rust-peers", "rapier3d": "rust-peers"}
 BUILDS = {"gyroflex": "default build", "gyroflex-x86-64-v3": "x86-64-v3 build", "gyroflex-native": "native build"}
 

@@ -44,9 +44,6 @@ const BELOW: f64 = 1e-12;
 /// By how much friction may be exceeded before a point slips: rounding is not slip.
 const EXCESS: f64 = 1e-9;
 
-/// How fast a point is to slip backwards to have turned back [m/s]: rounding is not motion.
-const STANDSTILL: f64 = 1e-8;
-
 /// What a contact can no longer do as it did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Broken {
@@ -102,10 +99,7 @@ impl Contacts {
                     Some((Broken::Friction(direction), friction.norm() - ground.friction * normal))
                 }
                 _ if normal < -EXCESS => Some((Broken::Pull, -normal)),
-                Mode::Slip => {
-                    let forward = along(velocity).dot(self.points[*i].direction);
-                    (forward < -STANDSTILL).then_some((Broken::Reversed, f64::MIN_POSITIVE))
-                }
+                Mode::Slip => self.points[*i].turned(along(velocity)).then_some((Broken::Reversed, f64::MIN_POSITIVE)),
                 Mode::Open | Mode::Stick => None,
             };
             // What would pull goes first, then what exceeds its friction most.

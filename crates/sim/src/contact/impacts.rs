@@ -1,6 +1,7 @@
 //! Contacts that close with an impact, and modes that agree with the forces.
 
 use super::events::Broken;
+use super::points::SLOW;
 use super::{Contacts, Event, EventKind, Mode, THRESHOLD, chatter};
 use crate::dynamics::Dynamics;
 use crate::error::Error;
@@ -44,9 +45,17 @@ impl Contacts {
                 self.events.push(event(EventKind::Slip));
             }
             Broken::Reversed => {
-                let (at, height) = (self.place(contact, dynamics, &state.q)?, self.height());
-                self.points[contact].close(at, height);
-                self.events.push(event(EventKind::Stick));
+                self.measure(dynamics, state.view())?;
+                let velocity = self.along_ground(contact);
+                let speed = velocity.norm();
+                if self.points[contact].direction.cross(velocity).norm() > SLOW {
+                    // It was turned round within a step, and never rested.
+                    self.points[contact].slip(velocity.scale(1.0 / speed));
+                } else {
+                    let (at, height) = (self.place(contact, dynamics, &state.q)?, self.height());
+                    self.points[contact].close(at, height);
+                    self.events.push(event(EventKind::Stick));
+                }
             }
         }
         self.refresh();
@@ -119,6 +128,8 @@ impl Contacts {
                 self.open(i, dynamics, state)?;
             } else if let Way::Slip(direction) = way {
                 self.points[i].slip(direction);
+                let along = &self.velocities[row - width..row];
+                self.points[i].heed(Vec3::new(along[0], if width == 2 { 0.0 } else { along[1] }, 0.0));
             }
         }
         self.refresh();

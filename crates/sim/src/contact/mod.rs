@@ -23,7 +23,7 @@ use crate::scenario::{Ground, fault};
 use crate::simulate::StateVec;
 use gyroflex::dynamics::{Constrained, Constraint, ConstraintMotion, Forward, Regularisation, Solved, State};
 use gyroflex::spatial::{Force, Transform, Vec3};
-use points::Point;
+use points::{Point, SLOW};
 use stepper::Stages;
 
 /// Directions that less than this part of their own compliance tells from others are dependent.
@@ -189,7 +189,7 @@ impl Contacts {
         self.motion[0].iter().fold(0.0, |m, a| a.abs().max(m))
     }
 
-    fn start_on_ground(&mut self, dynamics: &Dynamics, state: &StateVec, keys: &Keys) -> Result<(), Error> {
+    fn start_on_ground(&mut self, dynamics: &mut Dynamics, state: &StateVec, keys: &Keys) -> Result<(), Error> {
         let Some(ground) = self.ground else { return Ok(()) };
         dynamics.placements(&state.q, &mut self.poses)?;
         for (i, point) in self.points.iter_mut().enumerate() {
@@ -206,7 +206,42 @@ impl Contacts {
                 self.closed.push(i);
             }
         }
+        self.refresh();
+        self.measure(dynamics, state.view())?;
+        // What moves off is not held, and what slides is not stopped.
+        let rest = ground.resting_speed.max(SLOW);
+        for i in self.closed.clone() {
+            let velocity = self.along_ground(i);
+            let speed = velocity.norm();
+            if self.off_ground(i) > rest {
+                self.points[i].mode = Mode::Open;
+            } else if speed > rest {
+                self.points[i].slip(velocity.scale(1.0 / speed));
+                self.points[i].heed(velocity);
+            }
+        }
+        let points = &self.points;
+        self.closed.retain(|i| points[*i].mode != Mode::Open);
         Ok(())
+    }
+
+    /// Row of a closed contact in what was measured last, and number of its rows.
+    fn rows_of(&self, contact: usize) -> (usize, usize) {
+        let width = if self.ground.is_some_and(|ground| ground.planar) { 2 } else { 3 };
+        let before = self.closed.iter().take_while(|i| **i != contact).count();
+        (self.permanent_rows() + before * width, width)
+    }
+
+    /// Velocity of a closed contact along the ground when it was measured last [m/s].
+    fn along_ground(&self, contact: usize) -> Vec3<f64> {
+        let (row, width) = self.rows_of(contact);
+        Vec3::new(self.velocities[row], if width == 2 { 0.0 } else { self.velocities[row + 1] }, 0.0)
+    }
+
+    /// Its velocity off the ground [m/s].
+    fn off_ground(&self, contact: usize) -> f64 {
+        let (row, width) = self.rows_of(contact);
+        self.velocities[row + width - 1]
     }
 
     /// The constraints in force, from the modes of the contacts.

@@ -29,7 +29,7 @@ impl Mode {
 /// Errors of contacts are drawn back this fast, critically damped [rad/s].
 const STABILISATION: f64 = 100.0;
 /// Below this speed the direction in which a point slips is the one in which it began to [m/s].
-const SLOW: f64 = 1e-6;
+pub(super) const SLOW: f64 = 1e-6;
 
 #[derive(Clone, Debug)]
 pub(super) struct Point {
@@ -41,6 +41,8 @@ pub(super) struct Point {
     anchor: Vec3<f64>,
     /// Unit direction in which it slips.
     pub(super) direction: Vec3<f64>,
+    /// Whether it has moved in that direction: before, rounding may have it move back.
+    moving: bool,
     /// Gap at which it last opened, zero or just below [m].
     pub(super) armed: f64,
 }
@@ -54,6 +56,7 @@ impl Point {
             mode: Mode::Open,
             anchor: Vec3::zero(),
             direction: Vec3::zero(),
+            moving: false,
             armed: 0.0,
         }
     }
@@ -72,12 +75,31 @@ impl Point {
     pub(super) fn slip(&mut self, direction: Vec3<f64>) {
         self.mode = Mode::Slip;
         self.direction = direction;
+        self.moving = false;
+    }
+
+    /// Takes notice of a velocity along the ground at the end of a step while it slips [m/s].
+    pub(super) fn heed(&mut self, velocity: Vec3<f64>) {
+        if velocity.dot(self.direction) > 0.0 {
+            self.moving = true;
+            let speed = velocity.norm();
+            if speed > SLOW {
+                self.direction = velocity.scale(1.0 / speed);
+            }
+        }
+    }
+
+    /// Whether it has turned back while it slips with `velocity` [m/s].
+    pub(super) fn turned(&self, velocity: Vec3<f64>) -> bool {
+        velocity.dot(self.direction) < if self.moving { 0.0 } else { -SLOW }
     }
 
     /// Force along the ground for every newton of normal force while it slips with `velocity` [m/s].
     pub(super) fn ratio(&self, velocity: Vec3<f64>, friction: f64) -> Vec3<f64> {
         let speed = velocity.norm();
-        let direction = if speed > SLOW { velocity.scale(1.0 / speed) } else { self.direction };
+        // Behind a point of rest friction goes on as before it: where the velocity passes through zero is then seen at the end of the step.
+        let ahead = speed > SLOW && velocity.dot(self.direction) > 0.0;
+        let direction = if ahead { velocity.scale(1.0 / speed) } else { self.direction };
         direction.scale(-friction)
     }
 

@@ -1,7 +1,7 @@
 //! Runge-Kutta steps of a robot that is held, cut where its contacts change.
 
 use super::events::Broken;
-use super::{Contacts, chatter};
+use super::{Contacts, Mode, chatter};
 use crate::dynamics::Dynamics;
 use crate::error::Error;
 use crate::loads::Loads;
@@ -193,6 +193,13 @@ impl Contacts {
 
     fn note_drift(&mut self, dynamics: &mut Dynamics, state: &StateVec) -> Result<(), Error> {
         self.measure(dynamics, state.view())?;
+        for k in 0..self.closed.len() {
+            let i = self.closed[k];
+            if self.points[i].mode == Mode::Slip {
+                let velocity = self.along_ground(i);
+                self.points[i].heed(velocity);
+            }
+        }
         // What slips is not held along the ground.
         let (mut row, slipping) = (0, |c: &gyroflex::dynamics::Constraint<f64>, d: usize| {
             c.contact.is_some_and(|c| c.slip.is_some() && d != c.normal)

@@ -1,108 +1,74 @@
-//! Laws of constraints that are always in force.
+//! Constraints and couplings.
 
-use crate::robots::{G, close, energy, joint, link, robot, run};
+use crate::machines::{G, assert_near, chain, inertial, planar, run, side_by_side};
 use gyroflex_sim::Robot;
 
-/// A point mass on a rod: two sliding joints for the mass, and a rod that weighs next to nothing on a pivot, its end held to the mass.
-fn held_pendulum(length: f64) -> Robot {
-    let urdf = [
-        "<robot name=\"held\"><link name=\"world\"/><link name=\"across\"/>".to_owned(),
-        joint("x", "prismatic", ["world", "across"], [0.0; 3], "1 0 0"),
-        joint("z", "prismatic", ["across", "ball"], [0.0; 3], "0 0 1"),
-        link("ball", 2.0, [0.0; 3], 1e-3),
-        joint("pivot", "revolute", ["world", "rod"], [0.0; 3], "0 1 0"),
-        link("rod", 1e-9, [0.0; 3], 1e-9),
-        "</robot>".to_owned(),
-    ];
-    let yaml = format!("constraints: {{end: {{link: rod, xyz: [0, 0, {}], to: {{link: ball}}, directions: planar_point}}}}", -length);
-    robot(&urdf.concat(), &yaml)
+const LENGTH: f64 = 0.7;
+const MASS: f64 = 1.3;
+/// Of the body about its own centre: without joints that hold it a point could not be turned.
+const ABOUT_CENTRE: f64 = 0.02;
+
+/// A body that is free in the plane, but for a pin above its centre.
+fn pinned() -> Robot {
+    let yaml = format!("constraints:\n  pin: {{link: pitch_link, xyz: [0, 0, {LENGTH}], directions: planar_point}}\n");
+    planar(inertial(MASS, 0.0, 0.0, ABOUT_CENTRE), &yaml)
 }
 
-fn pendulum(length: f64) -> Robot {
-    let urdf = [
-        "<robot name=\"pendulum\"><link name=\"world\"/>".to_owned(),
-        joint("pivot", "revolute", ["world", "rod"], [0.0; 3], "0 1 0"),
-        link("rod", 2.0, [0.0, 0.0, -length], 1e-12),
-        "</robot>".to_owned(),
-    ];
-    robot(&urdf.concat(), "")
+fn pendulum() -> Robot {
+    chain(&[("pitch", "continuous", "0 1 0", inertial(MASS, 0.0, -LENGTH, ABOUT_CENTRE))], "model: complete\n")
+}
+
+const START: f64 = 1.2;
+
+fn swing(duration: f64, initial: &str) -> String {
+    format!("duration: {duration}\ninitial: {initial}\nintegrator: {{method: rk4, step: 1e-3}}\nlog: {{rate: 100}}")
+}
+
+fn pinned_start() -> String {
+    // The pin is at (x + L sin φ, z + L cos φ).
+    format!("{{q: {{x: {}, z: {}, pitch: {START}}}}}", -LENGTH * START.sin(), -LENGTH * START.cos())
 }
 
 #[test]
-fn mass_on_a_held_rod_swings_as_a_pendulum() {
-    let (length, angle) = (0.7_f64, 1.2_f64);
-    let rest = "log: {rate: 100}\nintegrator: {method: rk4, step: 5e-4}";
-    let (x, z) = (-length * angle.sin(), -length * angle.cos());
-    let held = run(&held_pendulum(length), &format!("duration: 2.0\ninitial: {{q: {{x: {x}, z: {z}, pivot: {angle}}}}}\n{rest}"));
-    let free = run(&pendulum(length), &format!("duration: 2.0\ninitial: {{q: {{pivot: {angle}}}}}\n{rest}"));
-    let names = held.simulation.coordinates().joints.iter().map(|j| j.name.clone()).collect::<Vec<_>>();
-    let pivot = names.iter().position(|n| n == "pivot").unwrap();
+fn body_on_a_pin_is_a_pendulum() {
+    let held = run(&pinned(), &swing(2.0, &pinned_start()));
+    let free = run(&pendulum(), &swing(2.0, &format!("{{q: {{pitch: {START}}}}}")));
     for (a, b) in held.samples.iter().zip(&free.samples) {
-        close("angle", a.q[pivot], b.q[0], 1e-7);
-        close("speed", a.qd[pivot], b.qd[0], 1e-6);
+        assert_near("angle", a.q[2], b.q[0], 1e-8);
+        assert_near("speed", a.qd[2], b.qd[0], 1e-7);
     }
-    assert!(held.summary.constraint_drift.unwrap() < 1e-8, "{:?}", held.summary.constraint_drift);
-}
-
-/// Crank 0.2, coupler 0.5, rocker 0.4, ground 0.5 m: the crank goes round.
-fn four_bar() -> Robot {
-    let urdf = [
-        "<robot name=\"four\"><link name=\"world\"/>".to_owned(),
-        joint("crank", "continuous", ["world", "crank_link"], [0.0; 3], "0 1 0"),
-        link("crank_link", 1.0, [0.1, 0.0, 0.0], 4e-3),
-        joint("coupler", "continuous", ["crank_link", "coupler_link"], [0.2, 0.0, 0.0], "0 1 0"),
-        link("coupler_link", 1.5, [0.25, 0.0, 0.0], 3e-2),
-        joint("rocker", "continuous", ["world", "rocker_link"], [0.5, 0.0, 0.0], "0 1 0"),
-        link("rocker_link", 1.2, [0.2, 0.0, 0.0], 2e-2),
-        "</robot>".to_owned(),
-    ];
-    robot(&urdf.concat(), "constraints: {loop: {link: coupler_link, xyz: [0.5, 0, 0], to: {link: rocker_link, xyz: [0.4, 0, 0]}, directions: planar_point}}")
-}
-
-/// Angles of coupler and rocker where the crank is at `crank` [rad]; joint angles are about +y, so that z falls with them.
-fn assemble(crank: f64) -> (f64, f64) {
-    let (x, z) = (0.2 * crank.cos() - 0.5, -0.2 * crank.sin());
-    let distance = x.hypot(z);
-    // From the rocker's pivot: direction of the crank's end, and the triangle of rocker, coupler and that line.
-    let inside = ((0.16 + distance * distance - 0.25) / (0.8 * distance)).acos();
-    let rocker = (-z).atan2(x) - inside;
-    let end = (0.5 + 0.4 * rocker.cos(), -0.4 * rocker.sin());
-    let coupler = (-(end.1 - -0.2 * crank.sin())).atan2(end.0 - 0.2 * crank.cos()) - crank;
-    (coupler, rocker)
 }
 
 #[test]
-fn four_bar_keeps_its_loop_and_its_energy() {
-    let (coupler, rocker) = assemble(0.3);
-    let made = run(&four_bar(), &format!("duration: 5.0\ninitial: {{q: {{crank: 0.3, coupler: {coupler}, rocker: {rocker}}}, qd: {{crank: 9}}}}\nlog: {{rate: 200}}\nintegrator: {{method: rk4, step: 1e-3}}"));
-    let drift = made.summary.constraint_drift.unwrap();
+fn pin_does_not_drift() {
+    let drift = run(&pinned(), &swing(5.0, &pinned_start())).summary.constraint_drift.expect("a pin holds it");
     assert!(drift < 1e-8, "{drift} m");
-    let (first, last) = (energy(&made.samples[0]), energy(made.last()));
-    close("energy", last, first, 1e-4 * first.abs().max(made.samples[0].kinetic_energy));
-    assert!(made.last().q[0].abs() > 6.0 || made.samples.iter().any(|s| s.q[0].abs() > 6.0), "the crank goes round");
-    let angle = made.last().q[0];
-    let (_, rocker) = assemble(angle);
-    let turn = std::f64::consts::TAU;
-    let off = (made.last().q[2] - rocker + 0.5 * turn).rem_euclid(turn) - 0.5 * turn;
-    close("rocker", off, 0.0, 1e-7);
 }
 
-#[test]
-fn coupled_joints_keep_their_ratio() {
-    let urdf = [
-        "<robot name=\"gears\"><link name=\"world\"/>".to_owned(),
-        joint("one", "continuous", ["world", "a"], [0.0; 3], "0 1 0"),
-        link("a", 1.0, [0.1, 0.0, 0.0], 1e-2),
-        joint("two", "continuous", ["world", "b"], [1.0, 0.0, 0.0], "0 1 0"),
-        link("b", 0.5, [0.0; 3], 2e-2),
-        "</robot>".to_owned(),
+fn sliders(ratio: f64) -> Robot {
+    let parts = [
+        ("a", "prismatic", "0 0 1", inertial(1.0, 0.0, 0.0, 0.01)),
+        ("b", "prismatic", "0 0 1", inertial(3.0, 0.0, 0.0, 0.01)),
     ];
-    let gears = robot(&urdf.concat(), "couplings: {mesh: {joint: two, follows: one, ratio: -2.0, offset: 0.1}}");
-    let made = run(&gears, "duration: 2.0\ninitial: {q: {one: 0.2, two: -0.3}}");
-    for s in &made.samples {
-        close("ratio", s.q[1], -2.0 * s.q[0] + 0.1, 1e-8);
+    side_by_side(&parts, &format!("couplings:\n  rope: {{joint: b, follows: a, ratio: {ratio}, offset: 0.1}}\n"))
+}
+
+/// Atwood's machine: `(1 + 3 r²) ä = −(1 + 3 r) g`.
+#[test]
+fn coupled_joints_keep_their_ratio_and_share_their_weights() {
+    for ratio in [-1.0, -2.0, 0.5] {
+        let run = run(&sliders(ratio), &swing(1.0, &format!("{{q: {{a: 0.2, b: {}}}}}", 0.2 * ratio + 0.1)));
+        let acceleration = -(1.0 + 3.0 * ratio) * G / (1.0 + 3.0 * ratio * ratio);
+        for sample in &run.samples {
+            assert_near("ratio", sample.q[1], ratio * sample.q[0] + 0.1, 1e-9);
+            assert_near("fall", sample.q[0], 0.2 + 0.5 * acceleration * sample.t * sample.t, 1e-9);
+        }
     }
-    // One degree of freedom: (I + m c² + 4 I₂) φ̈ = m g c cos φ.
-    let expected = G * 0.1 * 0.2_f64.cos() / (1e-2 + 0.01 + 4.0 * 2e-2);
-    close("acceleration", made.samples[0].qdd[0], expected, 1e-9);
+}
+
+/// Both ends of the rope stand still where their weights are in balance.
+#[test]
+fn coupled_weights_in_balance_stay() {
+    let run = run(&sliders(-1.0 / 3.0), &swing(1.0, "{q: {a: 0, b: 0.1}}"));
+    assert_near("fall", run.last().q[0], 0.0, 1e-12);
 }

@@ -1,8 +1,12 @@
-//! Laws of robots that the ground or their own loops hold.
+//! Laws of robots that the ground, their own loops or couplings hold.
 
-mod falling;
+mod bounces;
+mod energy;
 mod held;
+mod loops;
+mod machines;
 mod refusals;
-mod robots;
-mod sliding;
-mod standing;
+mod rotors;
+mod slides;
+mod stands;
+mod steps;

@@ -3,7 +3,7 @@
 use super::anchor::Held;
 use super::frames::{Root, SupportScratch, mark, outward};
 use super::joint_space::{constrained_joint_matrix_len, forward};
-use super::propagate::{ConstraintScratch, PropagatedScratch, block, propagate};
+use super::propagate::{ConstraintScratch, PropagatedScratch, block, mirror, propagate, write};
 use super::solve::{Regularisation, Solved, System};
 use super::spec::{Constraint, ConstraintError, check, constraint_matrix_len, constraint_rows, propagated_len};
 use crate::Scalar;
@@ -322,21 +322,12 @@ impl<T: Scalar, F: Over<T>> Place<'_, '_, T, F> {
             let mut column = first;
             for (l, (b, kept_b)) in constraints.iter().zip(kept.iter()).enumerate().skip(k) {
                 let block: [[F; 6]; 6] = block(bodies, (way_of(k), kept_a), (way_of(l), kept_b));
-                let rows = block.iter().enumerate().filter(|(i, _)| a.holds(*i)).map(|(_, entries)| entries);
-                for (row, entries) in (first..).zip(rows) {
-                    let entries = entries.iter().enumerate().filter(|(j, _)| b.holds(*j)).map(|(_, entry)| entry);
-                    for (to, entry) in (column..).zip(entries) {
-                        for at in [row * size + to, to * size + row] {
-                            if let Some(place) = matrix.get_mut(at) {
-                                *place = entry.store();
-                            }
-                        }
-                    }
-                }
+                write(&block, (a, b), (first, column), size, matrix);
                 column += b.rows();
             }
             first += a.rows();
         }
+        mirror(size, matrix);
     }
 
     /// The multipliers' forces on joints and base, and in the world.

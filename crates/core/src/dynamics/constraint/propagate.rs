@@ -246,3 +246,46 @@ pub(super) fn block<T: Scalar, F: Over<T>>(
     }
     block
 }
+
+/// Writes the held directions of a block into a matrix of so many rows, from a row and a column on.
+#[inline(always)]
+pub(super) fn write<T: Scalar, F: Over<T>>(
+    block: &[[F; 6]; 6],
+    (a, b): (&Constraint<T>, &Constraint<T>),
+    (row, column): (usize, usize),
+    size: usize,
+    matrix: &mut [T],
+) {
+    let (all, counts) = (b.rows() == 6, [0, 1, 2, 3, 4, 5].map(|j| b.holds(j)));
+    let mut row = row;
+    for (i, entries) in block.iter().enumerate() {
+        if !a.holds(i) {
+            continue;
+        }
+        let places = matrix.get_mut(row * size + column..).unwrap_or_default();
+        row += 1;
+        if let (true, Some(places)) = (all, places.first_chunk_mut::<6>()) {
+            for c in 0..6 {
+                places[c] = entries[c].store();
+            }
+            continue;
+        }
+        let held = entries.iter().zip(&counts).filter(|(_, counts)| **counts);
+        for (place, (entry, _)) in places.iter_mut().zip(held) {
+            *place = entry.store();
+        }
+    }
+}
+
+/// Below the diagonal, what stands above it.
+#[inline(always)]
+pub(super) fn mirror<T: Scalar>(size: usize, matrix: &mut [T]) {
+    for row in 1..size {
+        let (above, below) = matrix.split_at_mut_checked(row * size).unwrap_or_default();
+        for (place, column) in below.iter_mut().zip(above.chunks_exact(size.max(1))) {
+            if let Some(entry) = column.get(row) {
+                *place = *entry;
+            }
+        }
+    }
+}

@@ -129,15 +129,18 @@ impl<'a, T: Scalar> System<'a, T> {
         let n = self.rows;
         let (threshold, more) = (F::load(regularisation.threshold), F::one() + F::load(regularisation.damping));
         // A released direction is an equation of its own: λ = 0.
-        for i in 0..n {
-            let own: F = Self::at(self.counts, i);
-            for j in 0..n {
-                let both = own * Self::at::<F>(self.counts, j);
-                let entry = both * Self::at::<F>(self.a, i * n + j);
-                let entry = if i == j { entry * more + (F::one() - own) } else { entry };
-                Self::put(self.work, i * n + j, entry);
+        let rows = self.a.chunks_exact(n.max(1)).zip(self.work.chunks_exact_mut(n.max(1)));
+        for (i, ((row, work), own)) in rows.zip(self.counts.iter()).enumerate() {
+            let own = F::load(*own);
+            for ((to, entry), other) in work.iter_mut().zip(row).zip(self.counts.iter()) {
+                *to = (own * F::load(*other) * F::load(*entry)).store();
             }
-            Self::put(lambda, i, own * Self::at::<F>(self.b, i));
+            if let Some(entry) = work.get_mut(i) {
+                *entry = F::load(*entry).mul_add(more, F::one() - own).store();
+            }
+        }
+        for ((to, b), own) in lambda.iter_mut().zip(self.b.iter()).zip(self.counts.iter()) {
+            *to = (F::load(*own) * F::load(*b)).store();
         }
         // What slips is pushed by its normal force: λ_t = s λ_n.
         each_slip(constraints, |normal, row, ratio| {
@@ -176,23 +179,29 @@ impl<'a, T: Scalar> System<'a, T> {
             contradiction = missed.select_less(contradiction, contradiction, missed);
             let ratio = part * counts * (left / own) + (F::one() - part * counts);
             independence = ratio.select_less(independence, ratio, independence);
-            for i in k + 1..n {
-                let factor = Self::at::<F>(self.work, i * n + k) * inverse;
-                for j in k + 1..n {
-                    let entry = (-factor).mul_add(Self::at(self.work, k * n + j), Self::at(self.work, i * n + j));
-                    Self::put(self.work, i * n + j, entry);
+            let (head, below) = self.work.split_at_mut_checked((k + 1) * n).unwrap_or_default();
+            let pivot = head.get(k * n + k + 1..).unwrap_or_default();
+            let (head, right) = lambda.split_at_mut_checked(k + 1).unwrap_or_default();
+            let right_k: F = head.last().map_or(F::zero(), |x| F::load(*x));
+            for (row, right) in below.chunks_exact_mut(n.max(1)).zip(right) {
+                let Some((first, rest)) = row.get_mut(k..).and_then(|row| row.split_first_mut()) else { continue };
+                let factor = -(F::load(*first) * inverse);
+                for (entry, of_pivot) in rest.iter_mut().zip(pivot) {
+                    *entry = factor.mul_add(F::load(*of_pivot), F::load(*entry)).store();
                 }
-                let entry = (-factor).mul_add(Self::at(lambda, k), Self::at(lambda, i));
-                Self::put(lambda, i, entry);
+                *right = factor.mul_add(right_k, F::load(*right)).store();
             }
             Self::put(self.work, k * n + k, inverse);
         }
+        // Column by column: no sum waits for another one.
         for k in (0..n).rev() {
-            let mut sum: F = Self::at(lambda, k);
-            for j in k + 1..n {
-                sum = (-Self::at::<F>(self.work, k * n + j)).mul_add(Self::at(lambda, j), sum);
+            let (above, rest) = lambda.split_at_mut_checked(k).unwrap_or_default();
+            let Some(own) = rest.first_mut() else { continue };
+            let solved = F::load(*own) * Self::at::<F>(self.work, k * n + k);
+            *own = solved.store();
+            for (sum, row) in above.iter_mut().zip(self.work.chunks_exact(n.max(1))) {
+                *sum = (-Self::at::<F>(row, k)).mul_add(solved, F::load(*sum)).store();
             }
-            Self::put(lambda, k, sum * Self::at(self.work, k * n + k));
         }
         each_slip(constraints, |normal, row, ratio| {
             let force = F::load(ratio) * Self::at(lambda, normal);
