@@ -6,25 +6,12 @@ use super::{Contacts, Event, EventKind, Mode, SHARED, THRESHOLD, chatter, is_sha
 use crate::dynamics::Dynamics;
 use crate::error::Error;
 use crate::loads::Loads;
+use crate::scenario::Ground;
 use crate::simulate::StateVec;
 use gyroflex::dynamics::{Constrained, Forward, Impact, Regularisation, Solved};
-use gyroflex::spatial::Vec3;
 
 /// Slower than this a point does not leave the ground after an impact [m/s].
 const LEAVES: f64 = 1e-9;
-
-/// How a contact goes through an impact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
-    /// Held.
-    Stick,
-    /// Slipping in a direction.
-    Slip(Vec3<f64>),
-    /// Held off the ground without friction.
-    Cling,
-    /// It lets go.
-    Leave,
-}
 
 impl Contacts {
     /// Does what a broken contact asks for.
@@ -35,10 +22,9 @@ impl Contacts {
         state: &mut StateVec,
         t: f64,
     ) -> Result<(), Error> {
-        if std::env::var("DBG").is_ok() { eprintln!("change t {t:.12} {contact} {broken:?} {:?}", self.points.iter().map(|p| (p.mode, p.armed)).collect::<Vec<_>>()); }
         let event = |kind| Event { t, contact, kind, impulse: [0.0; 3] };
         match broken {
-            Broken::Ground => return self.touch_down(contact, dynamics, state, t),
+            Broken::Ground | Broken::Jam => return self.touch_down(contact, dynamics, state, t),
             Broken::Pull => {
                 self.open(contact, dynamics, state)?;
                 self.events.push(event(EventKind::LiftOff));
@@ -58,6 +44,9 @@ impl Contacts {
                     let at = self.place(contact, dynamics, &state.q)?;
                     self.points[contact].close(at);
                     self.events.push(event(EventKind::Stick));
+                    // What is left of its speed would have it seem to turn back.
+                    self.refresh();
+                    self.blow(dynamics, state, false)?;
                 }
             }
         }
@@ -65,12 +54,9 @@ impl Contacts {
         Ok(())
     }
 
-    fn height(&self) -> f64 {
-        self.ground.map_or(0.0, |ground| ground.height)
-    }
-
     fn open(&mut self, contact: usize, dynamics: &Dynamics, state: &StateVec) -> Result<(), Error> {
-        let gap = self.place(contact, dynamics, &state.q)?.z - self.height();
+        let height = self.ground.map_or(0.0, |ground| ground.height);
+        let gap = self.place(contact, dynamics, &state.q)?.z - height;
         self.points[contact].mode = Mode::Open;
         self.points[contact].armed = gap.min(0.0);
         self.closed.retain(|i| *i != contact);
@@ -88,44 +74,25 @@ impl Contacts {
         let Some(ground) = self.ground else { return Ok(()) };
         let at = self.place(contact, dynamics, &state.q)?;
         self.points[contact].close(at);
-        self.closed.push(contact);
-        self.closed.sort_unstable();
+        let strikes = !self.closed.contains(&contact);
+        if strikes {
+            self.closed.push(contact);
+            self.closed.sort_unstable();
+        }
         // Points that slip may be caught by the impact.
         for i in self.closed.clone() {
             let at = self.place(i, dynamics, &state.q)?;
             self.points[i].close(at);
         }
-        let width = if ground.planar { 2 } else { 3 };
-        // Bodies that rock from foot to foot would do so infinitely many times before they rest.
-        let soft = -self.rise(contact, dynamics, &state.q, &state.qd)? < ground.resting_speed;
-        let before = state.clone();
-        let felt = self.closed.clone();
-        let energy = dynamics.energy(state.view())?.kinetic;
-        let mut ways = vec![Way::Stick; felt.len()];
-        let mut done = self.find_ways((&felt, &mut ways), (soft, ground.friction), dynamics, (&before, state))?;
-        if !done || dynamics.energy(state.view())?.kinetic > energy * (1.0 + 1e-12) {
-            // Friction of rigid bodies may have no solution, or one that gives energy; without it there is one.
-            ways.fill(Way::Cling);
-            done = self.find_ways((&felt, &mut ways), (soft, 0.0), dynamics, (&before, state))?;
-        }
-        if !done {
-            ways.fill(Way::Stick);
-            state.clone_from(&before);
-            self.impact(&felt, &ways, dynamics, state)?;
-        }
+        self.refresh();
+        // Bodies that rock from foot to foot would do so infinitely many times before they rest: where the blow is so soft, no foot leaves by it.
+        let soft = -self.rise(contact, dynamics, &state.q, &state.qd)? <= ground.resting_speed;
+        let impulses = self.collide(dynamics, state, &ground, soft)?;
         self.measure(dynamics, state.view())?;
-        let mut row = self.permanent_rows();
-        for (i, way) in felt.into_iter().zip(ways) {
-            if way == Way::Leave {
-                self.events.push(Event { t, contact: i, kind: EventKind::LiftOff, impulse: [0.0; 3] });
-                self.open(i, dynamics, state)?;
-                continue;
-            }
-            let p = &self.multipliers[row..row + width];
-            let impulse = if width == 2 { [p[0], 0.0, p[1]] } else { [p[0], p[1], p[2]] };
-            let leaves = self.velocities[row + width - 1] > LEAVES;
-            row += width;
-            let kind = match (i == contact, leaves) {
+        for (i, impulse) in self.closed.clone().into_iter().zip(impulses) {
+            let (off, along) = (self.off_ground(i), self.along_ground(i));
+            let leaves = off > LEAVES && !soft;
+            let kind = match (strikes && i == contact, leaves) {
                 (true, false) => EventKind::TouchDown,
                 (true, true) => EventKind::Bounce,
                 (false, true) => EventKind::LiftOff,
@@ -133,67 +100,60 @@ impl Contacts {
             };
             self.events.push(Event { t, contact: i, kind, impulse });
             if leaves {
+                self.points[i].mode = Mode::Open;
+            } else if along.norm() > SLOW {
+                self.points[i].slip(along.scale(1.0 / along.norm()));
+                self.points[i].heed(along);
+            }
+        }
+        for i in self.closed.clone() {
+            if self.points[i].mode == Mode::Open {
                 self.open(i, dynamics, state)?;
-                continue;
             }
-            let along = &self.velocities[row - width..row];
-            let along = Vec3::new(along[0], if width == 2 { 0.0 } else { along[1] }, 0.0);
-            match way {
-                Way::Slip(direction) => self.points[i].slip(direction),
-                Way::Cling if along.norm() > SLOW => self.points[i].slip(along.scale(1.0 / along.norm())),
-                Way::Cling => self.points[i].mode = Mode::Stick,
-                Way::Stick | Way::Leave => {}
-            }
-            self.points[i].heed(along);
         }
         self.refresh();
         Ok(())
     }
 
-    /// Looks for ways through the impact that agree with their impulses, from those given. Returns whether there were any.
-    fn find_ways(
+    /// Velocities after an impact of all closed contacts, and their impulses in world axes [N s].
+    fn collide(
         &mut self,
-        (felt, ways): (&[usize], &mut [Way]),
-        (soft, friction): (bool, f64),
-        dynamics: &mut Dynamics,
-        (before, state): (&StateVec, &mut StateVec),
-    ) -> Result<bool, Error> {
-        let width = if self.ground.is_some_and(|ground| ground.planar) { 2 } else { 3 };
-        // Each point may slip, leave, and be called back once or twice; more changes would go in a circle.
-        for _ in 0..=4 * felt.len() {
-            state.clone_from(before);
-            self.impact(felt, ways, dynamics, state)?;
-            let change = match self.unlikely(felt, ways, width, friction, soft) {
-                None => self.called_back(felt, ways, dynamics, state, friction)?,
-                change => change,
-            };
-            if std::env::var("DBG").is_ok() { eprintln!("  ways {ways:?} change {change:?} p {:?} ", self.multipliers); }
-            let Some((k, way)) = change else { return Ok(true) };
-            ways[k] = way;
-        }
-        Ok(false)
-    }
-
-    /// The impact with every closed contact on its way; `self.closed` is then without those that leave.
-    fn impact(
-        &mut self,
-        felt: &[usize],
-        ways: &[Way],
         dynamics: &mut Dynamics,
         state: &mut StateVec,
-    ) -> Result<(), Error> {
-        let Some(ground) = self.ground else { return Ok(()) };
-        self.closed.clear();
-        for (i, way) in felt.iter().zip(ways) {
-            match way {
-                Way::Leave => continue,
-                Way::Stick => self.points[*i].mode = Mode::Stick,
-                Way::Slip(direction) => self.points[*i].slip(*direction),
-                Way::Cling => self.points[*i].slip(Vec3::zero()),
+        ground: &Ground,
+        soft: bool,
+    ) -> Result<Vec<[f64; 3]>, Error> {
+        let before = state.clone();
+        let energy = dynamics.energy(state.view())?.kinetic;
+        let width = if ground.planar { 2 } else { 3 };
+        let in_space = |p: &[f64]| if width == 2 { [p[0], 0.0, p[1]] } else { [p[0], p[1], p[2]] };
+        // Most impacts are those of feet that hold, which is solved as exactly as motion is.
+        self.rebound(dynamics, state, ground)?;
+        let solved = self.blow(dynamics, state, false)?;
+        let rows = &self.multipliers[self.permanent_rows()..];
+        let holds = |p: [f64; 3]| p[2] >= 0.0 && p[0].hypot(p[1]) <= ground.friction * p[2] * (1.0 + 1e-9);
+        let grown = |after: f64| after > energy * (1.0 + 1e-12);
+        if solved.dependent == 0.0 && rows.chunks(width).all(|p| holds(in_space(p))) {
+            let impulses = rows.chunks(width).map(in_space).collect();
+            if !grown(dynamics.energy(state.view())?.kinetic) {
+                return Ok(impulses);
             }
-            self.closed.push(*i);
         }
-        self.refresh();
+        state.clone_from(&before);
+        let responses = self.responses(dynamics, state, ground)?;
+        let mut p = responses.impulses(ground, ground.restitution, soft);
+        responses.give(&p, state);
+        if ground.restitution > 0.0 && grown(dynamics.energy(state.view())?.kinetic) {
+            // Newton's law may give energy where several points strike with friction.
+            state.clone_from(&before);
+            p = responses.impulses(ground, 0.0, soft);
+            responses.give(&p, state);
+        }
+        Ok(p.chunks(width).map(in_space).collect())
+    }
+
+    /// Restitution of what approaches faster than `resting_speed`.
+    fn rebound(&mut self, dynamics: &mut Dynamics, state: &StateVec, ground: &Ground) -> Result<(), Error> {
         self.measure(dynamics, state.view())?;
         let (permanent, mut row) = (self.permanent.len(), self.permanent_rows());
         for k in 0..self.closed.len() {
@@ -203,55 +163,7 @@ impl Contacts {
                 contact.restitution = if approach > ground.resting_speed { ground.restitution } else { 0.0 };
             }
         }
-        self.blow(dynamics, state, false).map(drop)
-    }
-
-    /// A contact whose impulse is not one of its way, and the way that it should go instead: friction that is asked for too much of lets it slip,
-    /// and what would still pull lets go, or is pulled after all where the impact is so soft that it is not to fly for it.
-    fn unlikely(
-        &self,
-        felt: &[usize],
-        ways: &[Way],
-        width: usize,
-        friction: f64,
-        soft: bool,
-    ) -> Option<(usize, Way)> {
-        let mut row = self.permanent_rows();
-        for (k, way) in ways.iter().enumerate().take(felt.len()) {
-            if *way == Way::Leave {
-                continue;
-            }
-            let p = &self.multipliers[row..row + width];
-            row += width;
-            let along = if width == 2 { Vec3::new(p[0], 0.0, 0.0) } else { Vec3::new(p[0], p[1], 0.0) };
-            let (normal, size) = (p[width - 1], along.norm());
-            match way {
-                Way::Stick if size > friction * normal.max(0.0) * (1.0 + 1e-9) => {
-                    return Some((k, Way::Slip(along.scale(-1.0 / size))));
-                }
-                Way::Cling if soft => {}
-                _ if normal < 0.0 => return Some((k, if soft { Way::Cling } else { Way::Leave })),
-                _ => {}
-            }
-        }
-        None
-    }
-
-    /// A point that let go, but comes down nevertheless: it is to be held after all.
-    fn called_back(
-        &mut self,
-        felt: &[usize],
-        ways: &[Way],
-        dynamics: &Dynamics,
-        state: &StateVec,
-        friction: f64,
-    ) -> Result<Option<(usize, Way)>, Error> {
-        for (k, contact) in felt.iter().enumerate().filter(|(k, _)| ways[*k] == Way::Leave) {
-            if self.rise(*contact, dynamics, &state.q, &state.qd)? < -LEAVES {
-                return Ok(Some((k, if friction > 0.0 { Way::Stick } else { Way::Cling })));
-            }
-        }
-        Ok(None)
+        Ok(())
     }
 
     /// An impact of all that is held; velocities jump.
@@ -269,7 +181,10 @@ impl Contacts {
         };
         let rank_revealing = Regularisation::rank_revealing(THRESHOLD);
         let mut solved = solve(rank_revealing);
-        if !self.closed.is_empty() && solved.as_ref().is_ok_and(may_share) && !solve(SHARED).as_ref().is_ok_and(is_shared) {
+        if !self.closed.is_empty()
+            && solved.as_ref().is_ok_and(may_share)
+            && !solve(SHARED).as_ref().is_ok_and(is_shared)
+        {
             solved = solve(rank_revealing);
         }
         if solved.is_ok() {

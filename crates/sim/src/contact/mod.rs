@@ -6,6 +6,7 @@
 
 mod events;
 mod impacts;
+mod impulses;
 mod points;
 mod stepper;
 mod touching;
@@ -164,7 +165,7 @@ impl Contacts {
         for (name, constraint) in self.names.iter().zip(&self.permanent) {
             for _ in 0..constraint.rows() {
                 let error = self.errors[row];
-                if !(error.abs() <= START) {
+                if error.is_nan() || error.abs() > START {
                     let problem = format!("the initial state misses it by {error:.4} m or rad");
                     let remedy = "choose `initial` so that all constraints are kept, or move the constraint";
                     return Err(fault(keys, &format!("constraint `{name}` of the robot"), problem, remedy));

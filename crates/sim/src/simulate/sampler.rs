@@ -118,6 +118,7 @@ impl Sampler {
     }
 
     /// Fills the sample of one instant; `loads` are those of that instant.
+    #[expect(clippy::too_many_arguments, reason = "a sample is of all of them")]
     pub(crate) fn take(
         &mut self,
         t: f64,
