@@ -282,8 +282,8 @@ pub(super) fn write<T: Scalar, F: Over<T>>(
 pub(super) fn mirror<T: Scalar>(size: usize, matrix: &mut [T]) {
     for row in 1..size {
         let (above, below) = matrix.split_at_mut_checked(row * size).unwrap_or_default();
-        for (place, column) in below.iter_mut().zip(above.chunks_exact(size.max(1))) {
-            if let Some(entry) = column.get(row) {
+        for (column, place) in below.iter_mut().enumerate().take(row) {
+            if let Some(entry) = above.get(column * size + row) {
                 *place = *entry;
             }
         }

@@ -129,9 +129,9 @@ impl<'a, T: Scalar> System<'a, T> {
         let n = self.rows;
         let (threshold, more) = (F::load(regularisation.threshold), F::one() + F::load(regularisation.damping));
         // A released direction is an equation of its own: λ = 0.
-        let rows = self.a.chunks_exact(n.max(1)).zip(self.work.chunks_exact_mut(n.max(1)));
-        for (i, ((row, work), own)) in rows.zip(self.counts.iter()).enumerate() {
-            let own = F::load(*own);
+        for (i, own) in self.counts.iter().enumerate() {
+            let (row, work) = (self.a.get(i * n..(i + 1) * n), self.work.get_mut(i * n..(i + 1) * n));
+            let (Some(row), Some(work), own) = (row, work, F::load(*own)) else { break };
             for ((to, entry), other) in work.iter_mut().zip(row).zip(self.counts.iter()) {
                 *to = (own * F::load(*other) * F::load(*entry)).store();
             }
@@ -183,8 +183,9 @@ impl<'a, T: Scalar> System<'a, T> {
             let pivot = head.get(k * n + k + 1..).unwrap_or_default();
             let (head, right) = lambda.split_at_mut_checked(k + 1).unwrap_or_default();
             let right_k: F = head.last().map_or(F::zero(), |x| F::load(*x));
-            for (row, right) in below.chunks_exact_mut(n.max(1)).zip(right) {
-                let Some((first, rest)) = row.get_mut(k..).and_then(|row| row.split_first_mut()) else { continue };
+            for (i, right) in right.iter_mut().enumerate() {
+                let row = below.get_mut(i * n + k..(i + 1) * n);
+                let Some((first, rest)) = row.and_then(|row| row.split_first_mut()) else { break };
                 let factor = -(F::load(*first) * inverse);
                 for (entry, of_pivot) in rest.iter_mut().zip(pivot) {
                     *entry = factor.mul_add(F::load(*of_pivot), F::load(*entry)).store();
@@ -199,8 +200,8 @@ impl<'a, T: Scalar> System<'a, T> {
             let Some(own) = rest.first_mut() else { continue };
             let solved = F::load(*own) * Self::at::<F>(self.work, k * n + k);
             *own = solved.store();
-            for (sum, row) in above.iter_mut().zip(self.work.chunks_exact(n.max(1))) {
-                *sum = (-Self::at::<F>(row, k)).mul_add(solved, F::load(*sum)).store();
+            for (i, sum) in above.iter_mut().enumerate() {
+                *sum = (-Self::at::<F>(self.work, i * n + k)).mul_add(solved, F::load(*sum)).store();
             }
         }
         each_slip(constraints, |normal, row, ratio| {
