@@ -44,6 +44,9 @@ const BELOW: f64 = 1e-12;
 /// By how much friction may be exceeded before a point slips: rounding is not slip.
 const EXCESS: f64 = 1e-9;
 
+/// How fast a point sinks into the ground that is not held there [m/s]: errors of integration are not that large.
+const SINKS: f64 = 1e-6;
+
 /// What a contact can no longer do as it did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Broken {
@@ -55,6 +58,8 @@ pub(super) enum Broken {
     Friction(Vec3<f64>),
     /// A slipping one has turned back.
     Reversed,
+    /// A slipping one is drawn into the ground by its own friction, which no force prevents (Painlevé).
+    Jam,
 }
 
 impl Contacts {
@@ -78,9 +83,9 @@ impl Contacts {
         }
         let [mut qdd, mut thetadd, mut tau_j] = core::mem::take(&mut self.motion);
         let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
-        let solved = self.forward(dynamics, state, tau, loads, out);
+        let solved = self.forward(dynamics, state, tau, &mut *loads, out);
         self.motion = [qdd, thetadd, tau_j];
-        solved?;
+        let redundant = solved?.dependent > 0.0;
         self.measure(dynamics, state)?;
         let mut worst: Option<(usize, Broken, f64)> = None;
         let (mut row, width) = (self.permanent_rows(), if ground.planar { 2 } else { 3 });
@@ -97,6 +102,7 @@ impl Contacts {
                     let direction = friction.scale(-1.0 / friction.norm().max(f64::MIN_POSITIVE));
                     (excess > EXCESS * (1.0 + friction.norm())).then_some((Broken::Friction(direction), excess))
                 }
+                Mode::Slip if normal < EXCESS && velocity[width - 1] < -SINKS => Some((Broken::Jam, f64::MAX)),
                 Mode::Slip => self.points[*i].turned(along(velocity)).then_some((Broken::Reversed, f64::MIN_POSITIVE)),
                 Mode::Open => None,
             };
@@ -113,6 +119,12 @@ impl Contacts {
                 }
             }
         }
-        Ok(worst.map(|(i, broken, _)| (i, broken)))
+        match worst {
+            // How the load is shared was a choice: another one may do.
+            Some((_, Broken::Pull | Broken::Friction(_), _)) if redundant => {
+                self.verdict(dynamics, state, (tau, loads))
+            }
+            worst => Ok(worst.map(|(i, broken, _)| (i, broken))),
+        }
     }
 }

@@ -2,27 +2,16 @@
 
 use super::events::Broken;
 use super::points::SLOW;
-use super::{Contacts, Event, EventKind, Mode, THRESHOLD, chatter};
+use super::{Contacts, Event, EventKind, Mode, SHARED, THRESHOLD, chatter, is_shared, may_share};
 use crate::dynamics::Dynamics;
 use crate::error::Error;
 use crate::loads::Loads;
+use crate::scenario::Ground;
 use crate::simulate::StateVec;
 use gyroflex::dynamics::{Constrained, Forward, Impact, Regularisation, Solved};
-use gyroflex::spatial::Vec3;
 
 /// Slower than this a point does not leave the ground after an impact [m/s].
 const LEAVES: f64 = 1e-9;
-
-/// How a contact goes through an impact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
-    /// Held.
-    Stick,
-    /// Slipping in a direction.
-    Slip(Vec3<f64>),
-    /// It lets go.
-    Leave,
-}
 
 impl Contacts {
     /// Does what a broken contact asks for.
@@ -35,7 +24,7 @@ impl Contacts {
     ) -> Result<(), Error> {
         let event = |kind| Event { t, contact, kind, impulse: [0.0; 3] };
         match broken {
-            Broken::Ground => return self.touch_down(contact, dynamics, state, t),
+            Broken::Ground | Broken::Jam => return self.touch_down(contact, dynamics, state, t),
             Broken::Pull => {
                 self.open(contact, dynamics, state)?;
                 self.events.push(event(EventKind::LiftOff));
@@ -52,9 +41,12 @@ impl Contacts {
                     // It was turned round within a step, and never rested.
                     self.points[contact].slip(velocity.scale(1.0 / speed));
                 } else {
-                    let (at, height) = (self.place(contact, dynamics, &state.q)?, self.height());
-                    self.points[contact].close(at, height);
+                    let at = self.place(contact, dynamics, &state.q)?;
+                    self.points[contact].close(at);
                     self.events.push(event(EventKind::Stick));
+                    // What is left of its speed would have it seem to turn back.
+                    self.refresh();
+                    self.blow(dynamics, state, false)?;
                 }
             }
         }
@@ -62,12 +54,9 @@ impl Contacts {
         Ok(())
     }
 
-    fn height(&self) -> f64 {
-        self.ground.map_or(0.0, |ground| ground.height)
-    }
-
     fn open(&mut self, contact: usize, dynamics: &Dynamics, state: &StateVec) -> Result<(), Error> {
-        let gap = self.place(contact, dynamics, &state.q)?.z - self.height();
+        let height = self.ground.map_or(0.0, |ground| ground.height);
+        let gap = self.place(contact, dynamics, &state.q)?.z - height;
         self.points[contact].mode = Mode::Open;
         self.points[contact].armed = gap.min(0.0);
         self.closed.retain(|i| *i != contact);
@@ -84,48 +73,26 @@ impl Contacts {
     ) -> Result<(), Error> {
         let Some(ground) = self.ground else { return Ok(()) };
         let at = self.place(contact, dynamics, &state.q)?;
-        self.points[contact].close(at, ground.height);
-        self.closed.push(contact);
-        self.closed.sort_unstable();
+        self.points[contact].close(at);
+        let strikes = !self.closed.contains(&contact);
+        if strikes {
+            self.closed.push(contact);
+            self.closed.sort_unstable();
+        }
         // Points that slip may be caught by the impact.
         for i in self.closed.clone() {
             let at = self.place(i, dynamics, &state.q)?;
-            self.points[i].close(at, ground.height);
+            self.points[i].close(at);
         }
-        let width = if ground.planar { 2 } else { 3 };
         self.refresh();
+        // Bodies that rock from foot to foot would do so infinitely many times before they rest: where the blow is so soft, no foot leaves by it.
+        let soft = -self.rise(contact, dynamics, &state.q, &state.qd)? <= ground.resting_speed;
+        let impulses = self.collide(dynamics, state, &ground, soft)?;
         self.measure(dynamics, state.view())?;
-        // A body that rocks from foot to foot ever faster comes to rest: where the blow is as slow as that, no foot leaves by it.
-        let leaving = -self.off_ground(contact) > ground.resting_speed;
-        let before = (state.qd.clone(), state.thetad.clone());
-        let felt = self.closed.clone();
-        let mut ways = vec![Way::Stick; felt.len()];
-        // Each point may slip, leave, and be caught again with others gone; more changes would go in a circle.
-        for _ in 0..=4 * felt.len() {
-            state.qd.clone_from(&before.0);
-            state.thetad.clone_from(&before.1);
-            self.impact(&felt, &ways, dynamics, state)?;
-            match self.unlikely(&felt, &ways, width, (ground.friction, leaving)) {
-                Some((k, way)) => ways[k] = way,
-                None => match self.still_coming(&felt, &ways, width, dynamics, state)? {
-                    Some(k) => ways[k] = Way::Stick,
-                    None => break,
-                },
-            }
-        }
-        self.measure(dynamics, state.view())?;
-        let mut row = self.permanent_rows();
-        for (i, way) in felt.into_iter().zip(ways) {
-            if way == Way::Leave {
-                self.events.push(Event { t, contact: i, kind: EventKind::LiftOff, impulse: [0.0; 3] });
-                self.open(i, dynamics, state)?;
-                continue;
-            }
-            let p = &self.multipliers[row..row + width];
-            let impulse = if width == 2 { [p[0], 0.0, p[1]] } else { [p[0], p[1], p[2]] };
-            let leaves = self.velocities[row + width - 1] > LEAVES;
-            row += width;
-            let kind = match (i == contact, leaves) {
+        for (i, impulse) in self.closed.clone().into_iter().zip(impulses) {
+            let (off, along) = (self.off_ground(i), self.along_ground(i));
+            let leaves = off > LEAVES && !soft;
+            let kind = match (strikes && i == contact, leaves) {
                 (true, false) => EventKind::TouchDown,
                 (true, true) => EventKind::Bounce,
                 (false, true) => EventKind::LiftOff,
@@ -133,36 +100,60 @@ impl Contacts {
             };
             self.events.push(Event { t, contact: i, kind, impulse });
             if leaves {
+                self.points[i].mode = Mode::Open;
+            } else if along.norm() > SLOW {
+                self.points[i].slip(along.scale(1.0 / along.norm()));
+                self.points[i].heed(along);
+            }
+        }
+        for i in self.closed.clone() {
+            if self.points[i].mode == Mode::Open {
                 self.open(i, dynamics, state)?;
-            } else if let Way::Slip(direction) = way {
-                self.points[i].slip(direction);
-                let along = &self.velocities[row - width..row];
-                self.points[i].heed(Vec3::new(along[0], if width == 2 { 0.0 } else { along[1] }, 0.0));
             }
         }
         self.refresh();
         Ok(())
     }
 
-    /// The impact with every closed contact on its way; `self.closed` is then without those that leave.
-    fn impact(
+    /// Velocities after an impact of all closed contacts, and their impulses in world axes [N s].
+    fn collide(
         &mut self,
-        felt: &[usize],
-        ways: &[Way],
         dynamics: &mut Dynamics,
         state: &mut StateVec,
-    ) -> Result<(), Error> {
-        let Some(ground) = self.ground else { return Ok(()) };
-        self.closed.clear();
-        for (i, way) in felt.iter().zip(ways) {
-            match way {
-                Way::Leave => continue,
-                Way::Stick => self.points[*i].mode = Mode::Stick,
-                Way::Slip(direction) => self.points[*i].slip(*direction),
+        ground: &Ground,
+        soft: bool,
+    ) -> Result<Vec<[f64; 3]>, Error> {
+        let before = state.clone();
+        let energy = dynamics.energy(state.view())?.kinetic;
+        let width = if ground.planar { 2 } else { 3 };
+        let in_space = |p: &[f64]| if width == 2 { [p[0], 0.0, p[1]] } else { [p[0], p[1], p[2]] };
+        // Most impacts are those of feet that hold, which is solved as exactly as motion is.
+        self.rebound(dynamics, state, ground)?;
+        let solved = self.blow(dynamics, state, false)?;
+        let rows = &self.multipliers[self.permanent_rows()..];
+        let holds = |p: [f64; 3]| p[2] >= 0.0 && p[0].hypot(p[1]) <= ground.friction * p[2] * (1.0 + 1e-9);
+        let grown = |after: f64| after > energy * (1.0 + 1e-12);
+        if solved.dependent == 0.0 && rows.chunks(width).all(|p| holds(in_space(p))) {
+            let impulses = rows.chunks(width).map(in_space).collect();
+            if !grown(dynamics.energy(state.view())?.kinetic) {
+                return Ok(impulses);
             }
-            self.closed.push(*i);
         }
-        self.refresh();
+        state.clone_from(&before);
+        let responses = self.responses(dynamics, state, ground)?;
+        let mut p = responses.impulses(ground, ground.restitution, soft);
+        responses.give(&p, state);
+        if ground.restitution > 0.0 && grown(dynamics.energy(state.view())?.kinetic) {
+            // Newton's law may give energy where several points strike with friction.
+            state.clone_from(&before);
+            p = responses.impulses(ground, 0.0, soft);
+            responses.give(&p, state);
+        }
+        Ok(p.chunks(width).map(in_space).collect())
+    }
+
+    /// Restitution of what approaches faster than `resting_speed`.
+    fn rebound(&mut self, dynamics: &mut Dynamics, state: &StateVec, ground: &Ground) -> Result<(), Error> {
         self.measure(dynamics, state.view())?;
         let (permanent, mut row) = (self.permanent.len(), self.permanent_rows());
         for k in 0..self.closed.len() {
@@ -172,68 +163,7 @@ impl Contacts {
                 contact.restitution = if approach > ground.resting_speed { ground.restitution } else { 0.0 };
             }
         }
-        self.blow(dynamics, state, false).map(drop)
-    }
-
-    /// A contact whose impulse is not one of its way, and the way that it should go instead: friction that is asked for too much of lets it slip, the most
-    /// exceeded first. What would pull lets go, the one that pulls most, but only when friction is as it can be: where one point is held by more than
-    /// that, another one may seem to pull that does not.
-    fn unlikely(
-        &self,
-        felt: &[usize],
-        ways: &[Way],
-        width: usize,
-        (friction, leaving): (f64, bool),
-    ) -> Option<(usize, Way)> {
-        let mut row = self.permanent_rows();
-        let (mut slips, mut leaves): (Option<(usize, Way)>, Option<usize>) = (None, None);
-        let (mut most, mut least) = (0.0, 0.0);
-        for (k, way) in ways.iter().enumerate().take(felt.len()) {
-            if *way == Way::Leave {
-                continue;
-            }
-            let p = &self.multipliers[row..row + width];
-            row += width;
-            let along = if width == 2 { Vec3::new(p[0], 0.0, 0.0) } else { Vec3::new(p[0], p[1], 0.0) };
-            let (normal, size) = (p[width - 1], along.norm());
-            let excess = size - friction * normal.max(0.0) * (1.0 + 1e-9);
-            if *way == Way::Stick && excess > most {
-                most = excess;
-                slips = Some((k, Way::Slip(along.scale(-1.0 / size))));
-            }
-            if leaving && normal < least {
-                least = normal;
-                leaves = Some(k);
-            }
-        }
-        slips.or(leaves.map(|k| (k, Way::Leave)))
-    }
-
-    /// A point that was let go and comes down nevertheless.
-    fn still_coming(
-        &mut self,
-        felt: &[usize],
-        ways: &[Way],
-        width: usize,
-        dynamics: &mut Dynamics,
-        state: &StateVec,
-    ) -> Result<Option<usize>, Error> {
-        if !ways.contains(&Way::Leave) {
-            return Ok(None);
-        }
-        let kept = core::mem::replace(&mut self.closed, felt.to_vec());
-        self.refresh();
-        self.measure(dynamics, state.view())?;
-        let (permanent, mut fastest, mut found) = (self.permanent_rows(), -LEAVES, None);
-        for (k, way) in ways.iter().enumerate() {
-            let off = self.velocities[permanent + (k + 1) * width - 1];
-            if *way == Way::Leave && off < fastest {
-                (fastest, found) = (off, Some(k));
-            }
-        }
-        self.closed = kept;
-        self.refresh();
-        Ok(found)
+        Ok(())
     }
 
     /// An impact of all that is held; velocities jump.
@@ -244,10 +174,19 @@ impl Contacts {
         release: bool,
     ) -> Result<Solved<f64>, Error> {
         let [mut qd, mut thetad, mut gears] = core::mem::take(&mut self.motion);
-        let out = Impact { qd: &mut qd, thetad: &mut thetad, gears: &mut gears };
-        let forces = Constrained { multipliers: &mut self.multipliers, wrenches: &mut self.wrenches };
-        let regularisation = Regularisation::rank_revealing(THRESHOLD);
-        let solved = dynamics.impact(state.view(), &self.constraints, release, regularisation, out, forces);
+        let mut solve = |regularisation| {
+            let out = Impact { qd: &mut qd, thetad: &mut thetad, gears: &mut gears };
+            let forces = Constrained { multipliers: &mut self.multipliers, wrenches: &mut self.wrenches };
+            dynamics.impact(state.view(), &self.constraints, release, regularisation, out, forces)
+        };
+        let rank_revealing = Regularisation::rank_revealing(THRESHOLD);
+        let mut solved = solve(rank_revealing);
+        if !self.closed.is_empty()
+            && solved.as_ref().is_ok_and(may_share)
+            && !solve(SHARED).as_ref().is_ok_and(is_shared)
+        {
+            solved = solve(rank_revealing);
+        }
         if solved.is_ok() {
             state.qd.copy_from_slice(&qd);
             state.thetad.copy_from_slice(&thetad);
@@ -265,8 +204,13 @@ impl Contacts {
         t: f64,
     ) -> Result<Solved<f64>, Error> {
         // Each contact may close, slip, stick and open; more means that they push each other around.
+        let mut calls = self.points.len();
         for _ in 0..=8 * self.points.len() {
             let Some(broken) = self.broken(dynamics, state.view(), (tau, &mut *loads))? else {
+                if calls > 0 && self.close_pressed(dynamics, state, (tau, &mut *loads), t)? {
+                    calls -= 1;
+                    continue;
+                }
                 let [mut qdd, mut thetadd, mut tau_j] = core::mem::take(&mut self.motion);
                 let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
                 let solved = self.forward(dynamics, state.view(), tau, loads, out);

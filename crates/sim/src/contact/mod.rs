@@ -6,8 +6,10 @@
 
 mod events;
 mod impacts;
+mod impulses;
 mod points;
 mod stepper;
+mod touching;
 
 pub use events::{Event, EventKind};
 pub use points::Mode;
@@ -22,12 +24,19 @@ use crate::robot::Robot;
 use crate::scenario::{Ground, fault};
 use crate::simulate::StateVec;
 use gyroflex::dynamics::{Constrained, Constraint, ConstraintMotion, Forward, Regularisation, Solved, State};
-use gyroflex::spatial::{Force, Transform, Vec3};
+use gyroflex::spatial::{Force, Motion, Transform, Vec3};
 use points::{Point, SLOW};
 use stepper::Stages;
 
 /// Directions that less than this part of their own compliance tells from others are dependent.
 pub(crate) const THRESHOLD: f64 = 1e-9;
+/// Part of their own compliance by which contacts that share a load give way, and what tells their directions from others then. The ground gives
+/// way by next to nothing: it accelerates by that part of what it holds back.
+const SHARED: Regularisation<f64> = Regularisation { threshold: 1e-13, damping: 1e-8 };
+/// What redundant contacts may miss each other by to share a load [m/s² or m/s]: to hold both of two velocities would take endless forces.
+const AT_ODDS: f64 = 1e-9;
+/// Points that start this near to the ground are on it [m].
+const ON_GROUND: f64 = 1e-6;
 /// Constraints that start farther off than this are not kept [m or rad].
 const START: f64 = 1e-3;
 
@@ -42,11 +51,14 @@ pub struct Contacts {
     /// In force now: the permanent ones, then the closed contacts in the order of `closed`.
     constraints: Vec<Constraint<f64>>,
     closed: Vec<usize>,
+    /// Whether redundant contacts share their load, as far as is known.
+    shares: bool,
     multipliers: Vec<f64>,
     wrenches: Vec<Force<f64>>,
     velocities: Vec<f64>,
     errors: Vec<f64>,
     poses: Vec<Transform<f64>>,
+    rates: Vec<Motion<f64>>,
     /// Accelerations, reused.
     motion: [Vec<f64>; 3],
     stages: Stages,
@@ -78,11 +90,13 @@ impl Contacts {
             permanent,
             ground,
             closed: Vec::new(),
+            shares: true,
             multipliers: Vec::new(),
             wrenches: Vec::new(),
             velocities: Vec::new(),
             errors: Vec::new(),
             poses: vec![Transform::identity(); bodies],
+            rates: vec![Motion::zero(); bodies],
             motion: [(); 3].map(|()| vec![0.0; nv]),
             stages: Stages::new(nq, nv),
             events: Vec::new(),
@@ -176,7 +190,7 @@ impl Contacts {
         }
         if solved.dependent > 0.0 {
             let message = format!(
-                "{} constrained directions depend on others: the first ones bear the load alone, their shares mean nothing",
+                "{} constrained directions depend on others: motion is as it must be, but how they share the load is a choice",
                 solved.dependent
             );
             let file = robot_file(keys);
@@ -201,8 +215,9 @@ impl Contacts {
             }
             point.mode = Mode::Open;
             point.armed = gap.min(0.0);
-            if gap <= 1e-6 {
-                point.close(at, ground.height);
+            if gap <= ON_GROUND {
+                // What is farther below than numbers in files are rounded is drawn up.
+                point.close(if gap < -ON_GROUND { Vec3::new(at.x, at.y, ground.height) } else { at });
                 self.closed.push(i);
             }
         }
@@ -247,6 +262,7 @@ impl Contacts {
     /// The constraints in force, from the modes of the contacts.
     fn refresh(&mut self) {
         self.constraints.truncate(self.permanent.len());
+        self.shares = !self.closed.is_empty();
         if let Some(ground) = self.ground {
             for i in &self.closed {
                 self.constraints.push(self.points[*i].constraint(&ground));
@@ -291,7 +307,8 @@ impl Contacts {
         gyroflex::dynamics::constraint_rows(&self.permanent)
     }
 
-    /// Accelerations of the robot as it is held, and the forces on it; contact forces are then those of [`Contacts::force`].
+    /// Accelerations of the robot as it is held, and the forces on it; contact forces are then those of [`Contacts::force`]. Contacts that hold more
+    /// than they need to share the load evenly.
     ///
     /// # Errors
     /// A slice that does not fit the model.
@@ -305,9 +322,20 @@ impl Contacts {
     ) -> Result<Solved<f64>, Error> {
         self.aim_friction(dynamics, state)?;
         loads.update(dynamics, state.q)?;
-        let forces = Constrained { multipliers: &mut self.multipliers, wrenches: &mut self.wrenches };
-        let regularisation = Regularisation::rank_revealing(THRESHOLD);
-        dynamics.constrained_forward(state, tau, loads.external(), &self.constraints, regularisation, out, forces)
+        let (rates, multipliers, wrenches) = (out, &mut self.multipliers, &mut self.wrenches);
+        let mut solve = |regularisation| {
+            let out = Forward { qdd: &mut *rates.qdd, thetadd: &mut *rates.thetadd, tau_j: &mut *rates.tau_j };
+            let forces = Constrained { multipliers: &mut *multipliers, wrenches: &mut *wrenches };
+            dynamics.constrained_forward(state, tau, loads.external(), &self.constraints, regularisation, out, forces)
+        };
+        let solved = solve(Regularisation::rank_revealing(THRESHOLD))?;
+        if self.shares && may_share(&solved) {
+            self.shares = is_shared(&solve(SHARED)?);
+            if !self.shares {
+                solve(Regularisation::rank_revealing(THRESHOLD))?;
+            }
+        }
+        Ok(solved)
     }
 
     /// Force of the ground on a contact point at the last call of [`Contacts::forward`], in world axes [N].
@@ -381,6 +409,16 @@ impl Contacts {
         dynamics.placements(q, &mut self.poses)?;
         Ok(self.points[contact].place(&self.poses))
     }
+}
+
+/// Whether there is a load that may be shared.
+fn may_share(solved: &Solved<f64>) -> bool {
+    solved.dependent > 0.0 && solved.contradiction < AT_ODDS
+}
+
+/// Whether it has been. Where points slip there may be no even share: a share that helps one of them may hinder another.
+fn is_shared(solved: &Solved<f64>) -> bool {
+    solved.dependent == 0.0 && solved.independence > 0.1 * SHARED.damping
 }
 
 fn robot_file(keys: &Keys) -> String {

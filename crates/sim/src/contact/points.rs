@@ -35,7 +35,7 @@ pub(super) const SLOW: f64 = 1e-6;
 pub(super) struct Point {
     pub(super) name: String,
     pub(super) body: usize,
-    point: Vec3<f64>,
+    pub(super) point: Vec3<f64>,
     pub(super) mode: Mode,
     /// Where it is held [m].
     anchor: Vec3<f64>,
@@ -66,10 +66,10 @@ impl Point {
         poses[self.body].point(self.point)
     }
 
-    /// Held from now on where it is, on the ground.
-    pub(super) fn close(&mut self, at: Vec3<f64>, height: f64) {
+    /// Held from now on where it is. It is on the ground but for rounding, which must not set feet of one body at odds.
+    pub(super) fn close(&mut self, at: Vec3<f64>) {
         self.mode = Mode::Stick;
-        self.anchor = Vec3::new(at.x, at.y, height);
+        self.anchor = at;
     }
 
     pub(super) fn slip(&mut self, direction: Vec3<f64>) {

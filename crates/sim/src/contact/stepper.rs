@@ -193,6 +193,14 @@ impl Contacts {
 
     fn note_drift(&mut self, dynamics: &mut Dynamics, state: &StateVec) -> Result<(), Error> {
         self.measure(dynamics, state.view())?;
+        if let Some(ground) = self.ground {
+            // What has come up closes again on the ground, not just below it where it opened.
+            dynamics.placements(&state.q, &mut self.poses)?;
+            for point in &mut self.points {
+                let gap = point.place(&self.poses).z - ground.height;
+                point.armed = point.armed.max(gap.min(0.0));
+            }
+        }
         for k in 0..self.closed.len() {
             let i = self.closed[k];
             if self.points[i].mode == Mode::Slip {

@@ -164,7 +164,8 @@ impl HeldFiles<'_> {
         }
         for (name, file) in self.couplings {
             let key = format!("couplings.{name}");
-            finite(keys, &key, &[file.ratio, file.offset, file.stabilisation])?;
+            finite(keys, &key, &[file.ratio, file.offset])?;
+            rate(keys, &key, file.stabilisation)?;
             let (joint, follows) = (
                 find_joint(robot, keys, &format!("{key}.joint"), &file.joint)?,
                 find_joint(robot, keys, &format!("{key}.follows"), &file.follows)?,
@@ -184,10 +185,7 @@ fn constraint(robot: &Robot, keys: &Keys, name: &str, file: &ConstraintFile) -> 
     let key = format!("constraints.{name}");
     let numbers: Vec<f64> = [file.xyz, file.rpy, file.to.xyz, file.to.rpy].concat();
     finite(keys, &key, &numbers)?;
-    if !(file.stabilisation.is_finite() && file.stabilisation >= 0.0) {
-        let problem = format!("{} is not zero or a number above it", file.stabilisation);
-        return Err(keys.error(&format!("{key}.stabilisation"), problem, "give a rate in rad/s"));
-    }
+    rate(keys, &key, file.stabilisation)?;
     let directions = file.directions.directions();
     if directions.count() == 0 {
         return Err(keys.error(&format!("{key}.directions"), "nothing is held", "list a direction, or take it out"));
@@ -215,6 +213,14 @@ fn constraint(robot: &Robot, keys: &Keys, name: &str, file: &ConstraintFile) -> 
     }
     let hold = Hold::Frame { frame: Frame { body, placement }, anchor, directions };
     Ok(HeldPart { name: name.to_owned(), hold, stabilisation: file.stabilisation })
+}
+
+fn rate(keys: &Keys, key: &str, stabilisation: f64) -> Result<(), Error> {
+    if stabilisation.is_finite() && stabilisation >= 0.0 {
+        return Ok(());
+    }
+    let problem = format!("{stabilisation} is not zero or a number above it");
+    Err(keys.error(&format!("{key}.stabilisation"), problem, "give a rate in rad/s"))
 }
 
 fn finite(keys: &Keys, key: &str, numbers: &[f64]) -> Result<(), Error> {

@@ -87,6 +87,7 @@ impl Simulation {
         self.control.start(&self.references)?;
         self.warnings.truncate(self.setup_warnings);
         self.loads.set_couple(None, 0);
+        self.loads.set_time(0.0);
         if !self.contacts.is_empty() {
             // What there was to say, it said when it was set up.
             let (start, keys) = ((self.tau.as_slice(), &mut self.loads), &self.file.keys);

@@ -2,6 +2,7 @@
 
 mod bounces;
 mod energy;
+mod feet;
 mod held;
 mod loops;
 mod machines;

@@ -81,6 +81,12 @@ fn unknown_and_useless_names_are_refused_with_key_and_remedy() {
             "never move",
             "name links",
         ),
+        (
+            "couplings: {rope: {joint: x, follows: z, ratio: 1, stabilisation: -2}}",
+            "couplings.rope.stabilisation",
+            "-2",
+            "rad/s",
+        ),
         ("couplings: {rope: {joint: w, follows: x, ratio: 1}}", "couplings.rope.joint", "`w`", "nearest"),
         (
             "couplings: {rope: {joint: x, follows: x, ratio: 1}}",
