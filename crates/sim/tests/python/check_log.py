@@ -66,6 +66,23 @@ class Checker:
                 self.column(row, f"base.w{axis}", getattr(base.angular_velocity, axis))
                 self.column(row, f"base.v{axis}", getattr(base.linear_velocity, axis))
 
+        held = "constraint_drift" in self.names
+        self.equal("footing", message.HasField("footing"), held)
+        if held:
+            self.footing(row, message.footing)
+
+    def footing(self, row, footing):
+        for contact in footing.contacts:
+            for axis in "xyz":
+                self.column(row, f"contact.{contact.name}.f{axis}", getattr(contact.force, axis))
+            for key in ("gap", "mode"):
+                self.column(row, f"contact.{contact.name}.{key}", getattr(contact, key))
+        for axis in "xyz":
+            self.column(row, f"center_of_mass.{axis}", getattr(footing.center_of_mass, axis))
+        for axis in "xy":
+            self.column(row, f"zero_moment_point.{axis}", getattr(footing.zero_moment_point, axis))
+        self.column(row, "constraint_drift", footing.constraint_drift)
+
     def transforms(self, row, message):
         frames = {t.child_frame_id: t for t in message.transforms}
         for t in message.transforms:
