@@ -18,6 +18,7 @@ mod drive_torque;
 mod elastic_inverse;
 mod energy;
 mod euler;
+mod flexible;
 mod forward;
 mod forward_derivatives;
 mod inverse_derivatives;
@@ -50,6 +51,9 @@ pub use elastic_inverse::{
 };
 pub use energy::{Energy, Power, energy, power};
 pub use euler::Rotation;
+pub use flexible::{
+    FlexibleBody, FlexibleMode, FlexibleScratch, FlexibleStation, flexible_matrix_len, flexible_shapes_len,
+};
 pub use forward::{ForwardScratch, forward_dynamics, joint_space_len, matrix_len};
 pub use forward_derivatives::{ForwardDerivatives, derivative_matrix_len, forward_derivatives};
 pub use inverse_derivatives::{InverseDerivatives, inverse_derivatives};

@@ -57,6 +57,12 @@ pub enum Defect {
     TooFewBodies,
     /// `|e'| ≥ 1`: the transmission error would turn the motor's motion around.
     TransmissionErrorTooSteep(f64),
+    /// The records of flexible links do not fit together; names those that are too few, too many or out of order.
+    FlexibleRecords(&'static str),
+    /// The body hangs on a link that bends, or its rotor sits on one, but its seat names none of that link's stations.
+    NoStation,
+    /// A rigidly geared rotor on another body than its joint's parent, in a robot whose links bend.
+    RemoteRigidRotor,
 }
 
 impl fmt::Display for Defect {
@@ -102,6 +108,14 @@ impl fmt::Display for Defect {
             Self::TransmissionErrorTooSteep(slope) => write!(
                 f,
                 "the transmission error changes by {slope} per radian, but must stay below 1; amplitude or cycles are too large"
+            ),
+            Self::FlexibleRecords(which) => write!(f, "the records of flexible links do not fit together: {which}"),
+            Self::NoStation => {
+                f.write_str("a link that bends carries it or its rotor, but its seat names none of that link's stations")
+            }
+            Self::RemoteRigidRotor => f.write_str(
+                "its rotor has a rigid gear and sits on a link other than the joint's parent, which a robot with flexible links \
+                 cannot have; mount it on the parent, or make the transmission elastic",
             ),
         }
     }

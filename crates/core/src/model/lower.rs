@@ -121,17 +121,11 @@ impl RobotSpec<'_> {
         for (i, spec) in self.bodies.iter().enumerate() {
             let (Some(drive), Some(record)) = (&spec.drive, bodies[i].drive) else { continue };
             let Some(mount) = drive.rotor.mount.body else { continue };
-            let (spin, place) = (drive.rotor.inertia, drive.rotor.mount.placement);
-            let axis = place.rotation() * drive.rotor.mount.axis;
-            if let Some(rotor) = drive.rotor.body {
-                // I_r = J_t (1 − n nᵀ) + J n nᵀ about the rotor's centre.
-                let jt = rotor.transverse_inertia;
-                let about_centre = SymMat3::diagonal(jt, jt, jt) + SymMat3::outer(axis).scale(spin - jt);
-                let at_rest = SpatialInertia::from_com(rotor.mass, place.pos, about_centre);
+            if let Some(at_rest) = drive.rotor.at_rest() {
                 bodies[mount].inertia = bodies[mount].inertia + at_rest.seen_from_parent(bodies[mount].frame);
             }
             if record.elastic.is_some() && fidelity.is_gyroscopic() {
-                let own = SymMat3::outer(record.rotor.axis).scale(spin);
+                let own = SymMat3::outer(record.rotor.axis).scale(drive.rotor.inertia);
                 bodies[mount].inertia.rotational = bodies[mount].inertia.rotational - own;
                 bodies[mount].rotors += own;
             }

@@ -1,7 +1,7 @@
 //! A robot as its user describes it: own frames, SI units, `f64`.
 
 use super::{Friction, JointKind, TransmissionError};
-use crate::spatial::{SpatialInertia, Transform, Vec3};
+use crate::spatial::{SpatialInertia, SymMat3, Transform, Vec3};
 
 /// Which physics of the rotors a model keeps (PHYSICS: "four models, one code path").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -94,6 +94,17 @@ pub struct RotorSpec {
     pub body: Option<RotorBody>,
     /// Where the rotor sits.
     pub mount: MountSpec,
+}
+
+impl RotorSpec {
+    /// `I_r`: inertia of the rotor at rest in the mount link's frame, if it is not part of the link's.
+    pub(crate) fn at_rest(&self) -> Option<SpatialInertia<f64>> {
+        // I_r = J_t (1 − n nᵀ) + J n nᵀ about the rotor's centre.
+        let (RotorBody { mass, transverse_inertia: jt }, place) = (self.body?, self.mount.placement);
+        let axis = place.rotation() * self.mount.axis;
+        let about_centre = SymMat3::diagonal(jt, jt, jt) + SymMat3::outer(axis).scale(self.inertia - jt);
+        Some(SpatialInertia::from_com(mass, place.pos, about_centre))
+    }
 }
 
 /// The part of a rotor's inertia that its spin does not show.

@@ -110,6 +110,20 @@ impl<T: Scalar> Mat3<T> {
         SymMat3 { xx: a.x, yy: b.y, zz: c.z, xy: (a.y + b.x) * half, xz: (a.z + c.x) * half, yz: (b.z + c.y) * half }
     }
 
+    /// The sum of the diagonal.
+    #[inline(always)]
+    pub fn trace(self) -> T {
+        let [a, b, c] = self.rows;
+        a.x + b.y + c.z
+    }
+
+    /// `∫ r × s` where the matrix is `∫ r sᵀ`: twice the vector of its skew part.
+    #[inline(always)]
+    pub fn cross_of(self) -> Vec3<T> {
+        let [a, b, c] = self.rows;
+        Vec3::new(b.z - c.y, c.x - a.z, a.y - b.x)
+    }
+
     /// The outer product `a bᵀ`.
     #[inline(always)]
     pub fn outer(a: Vec3<T>, b: Vec3<T>) -> Self {
