@@ -20,7 +20,7 @@ impl Equilibrium {
 
     /// Writes the reflected motor positions `theta` at which the transmissions hold the links at `q` against gravity and `ext`,
     /// and the motor torques `tau` that hold the motors there; both have `nv` entries. Without an elastic transmission
-    /// `theta` is the joint's own position. On a floating root `tau` is the wrench that would hold it.
+    /// `theta` is the joint's own position. Modes of links that bend are held where they are: `tau` has the forces on them. On a floating root `tau` is the wrench that would hold it.
     ///
     /// # Errors
     /// A slice that does not fit the model.
@@ -37,6 +37,8 @@ impl Equilibrium {
         let accel = Acceleration { qdd: rest, thetadd: rest };
         dynamics.inverse(state, accel, ext, Inverse { tau_j: &mut self.tau_j, tau })?;
         let model = dynamics.model();
+        // A mode has no motor.
+        theta[model.nv()..].copy_from_slice(&q[model.nq()..]);
         for body in model.bodies() {
             let (i, k) = (body.q_index(), body.v_index());
             if body.joint.nv() != 1 {

@@ -24,6 +24,14 @@ pub struct Query {
     pub tau: Option<Vec<f64>>,
     /// Generalised forces on the link side of the joints, like `tau` [N m or N].
     pub tau_ext: Option<Vec<f64>>,
+    /// Modal coordinates of links that bend, one entry per mode [m, in torsion rad]; `None` is zero.
+    pub eta: Option<Vec<f64>>,
+    /// Their rates; `None` is zero.
+    pub etad: Option<Vec<f64>>,
+    /// Their accelerations, for inverse dynamics; `None` leaves the modes free: their accelerations are computed.
+    pub etadd: Option<Vec<f64>>,
+    /// Generalised forces on the modes, for forward dynamics [N, in torsion N m]; `None` is zero.
+    pub tau_eta: Option<Vec<f64>>,
     /// Loads on links.
     pub wrenches: Vec<Wrench>,
     /// Acceleration of gravity in world axes [m/s²]; `None` is the robot's own.
@@ -55,7 +63,10 @@ pub enum WrenchAxes {
     Link,
 }
 
-const KEYS: [&str; 10] = ["q", "qd", "qdd", "theta", "thetad", "thetadd", "tau", "tau_ext", "wrenches", "gravity"];
+const KEYS: [&str; 14] = [
+    "q", "qd", "qdd", "theta", "thetad", "thetadd", "tau", "tau_ext", "eta", "etad", "etadd", "tau_eta", "wrenches",
+    "gravity",
+];
 const WRENCH_KEYS: [&str; 5] = ["link", "force", "torque", "frame", "point"];
 
 impl Query {
@@ -97,6 +108,10 @@ impl Query {
             "thetadd" => &mut self.thetadd,
             "tau" => &mut self.tau,
             "tau_ext" => &mut self.tau_ext,
+            "eta" => &mut self.eta,
+            "etad" => &mut self.etad,
+            "etadd" => &mut self.etadd,
+            "tau_eta" => &mut self.tau_eta,
             _ => return None,
         })
     }

@@ -66,7 +66,7 @@ fn joint(j: &JointInfo) -> Vec<String> {
 }
 
 fn mode(m: &Mode) -> Vec<String> {
-    vec![digits(m.frequency), format!("{} of {}", if m.on_motor { "motor" } else { "link" }, m.joint)]
+    vec![digits(m.frequency), m.moves_most()]
 }
 
 fn smoothness(f: &mut fmt::Formatter<'_>, needed: &SmoothnessTable) -> fmt::Result {

@@ -104,6 +104,10 @@ impl Simulation {
                 return Err(fault(&file.keys, "controller.type", problem, "add `ground: {friction: …, planar: true}`"));
             }
         }
+        if !robot.held.is_empty() || scenario.ground.is_some() {
+            let remedy = "take `ground` out of the scenario and constraints and couplings off the robot, or the link out of `flexible_links`";
+            robot.refuse_bending("what holds a robot beside its joints", remedy)?;
+        }
         let mut contacts = Contacts::new(&robot, scenario.ground, &dynamics, &file.keys)?;
         if !contacts.is_empty() {
             if !matches!(scenario.integrator, Integrator::Rk4 { .. }) {

@@ -36,6 +36,8 @@ pub(super) fn plant(nominal: &Robot, plant: &Plant, keys: &Keys) -> Result<Robot
         })?;
     }
     if let Some(factors) = &plant.mass {
+        let remedy = "take the link out of `flexible_links`, or change the beam in a robot of its own";
+        robot.refuse_bending("a factor on masses", remedy)?;
         scale(&mut robot, factors, keys, "plant.mass", "mass", |robot, body, factor| {
             let load = robot.payload.as_mut().filter(|load| load.body == Some(body));
             let inertia = &mut robot.bodies[body].inertia;
