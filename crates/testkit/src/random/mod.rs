@@ -2,10 +2,12 @@
 
 mod constraint;
 mod drive;
+mod flexible;
 mod robot;
 mod state;
 
 pub use constraint::anchored_at;
+pub use flexible::{FlexibleOptions, RandomFlexible};
 pub use robot::RandomRobot;
 pub use state::random_point;
 
