@@ -52,7 +52,9 @@ pub use elastic_inverse::{
 pub use energy::{Energy, Power, energy, power};
 pub use euler::Rotation;
 pub use flexible::{
-    FlexibleBody, FlexibleMode, FlexibleScratch, FlexibleStation, flexible_matrix_len, flexible_shapes_len,
+    FlexibleBody, FlexibleMatrices, FlexibleMode, FlexiblePlacements, FlexibleScratch, FlexibleStation, flexible_aba,
+    flexible_energy, flexible_hybrid, flexible_mass_matrix, flexible_matrix_len, flexible_placements, flexible_power,
+    flexible_rnea, flexible_shapes_len, flexible_velocities,
 };
 pub use forward::{ForwardScratch, forward_dynamics, joint_space_len, matrix_len};
 pub use forward_derivatives::{ForwardDerivatives, derivative_matrix_len, forward_derivatives};

@@ -112,8 +112,8 @@ impl<'s> FlexibleRecords<'s> {
         let shapes = stations_k.clone().flat_map(|k| &self.shapes[link.shape_range(k)]);
         let shapes =
             shapes.fold(true, |all, s| all && finite(&s.displacement.to_array()) && finite(&s.rotation.to_array()));
-        let shortenings = stations_k.flat_map(|k| &self.shortenings[link.shortening_range(k)]);
-        let shortenings = shortenings.fold(true, |all, s| all && finite(&s.to_array()));
+        let mut shortenings = stations_k.flat_map(|k| &self.shortenings[link.shortening_range(k)]);
+        let shortenings = shortenings.all(|s| finite(&s.to_array()));
         if !(modes && doubles && stations && shapes && shortenings) {
             return Err(Defect::NotFinite("a number of its modes or stations"));
         }

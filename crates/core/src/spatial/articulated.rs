@@ -1,6 +1,6 @@
 //! Inertia of an articulated body.
 
-use super::{Force, Mat3, Motion, SpatialInertia, SymMat3, Vec3};
+use super::{Force, Mat3, Motion, SpatialInertia, SymMat3, Transform, Vec3};
 use crate::Scalar;
 use core::ops::{Add, AddAssign};
 
@@ -58,6 +58,17 @@ impl<T: Scalar> ArticulatedInertia<T> {
             yz: r.x.mul_add(h1.y - g2.z, cross_term(r.z, g2.x, r.y, h1.x, i.yz)),
         };
         Self { ang, mixed: Mat3::from_rows(g0, g1, g2), lin: self.lin }
+    }
+
+    /// `Xᵀ Iᴬ X`: the same inertia seen from the frame `p`, where `self` is given in the frame `i` of `x` (from `p` to `i`).
+    #[inline(always)]
+    pub fn seen_from_parent(&self, x: Transform<T>) -> Self {
+        let turned = Self {
+            ang: x.inv_tensor(self.ang),
+            mixed: x.rot.transpose() * self.mixed * x.rot,
+            lin: x.inv_tensor(self.lin),
+        };
+        turned.moved(x.pos)
     }
 
     /// [`ArticulatedInertia::moved`] by `a` along x.

@@ -7,13 +7,24 @@
 //! rotation. What is not small of second order in the deflection is so only with the shortening of a bent beam counted, an option of
 //! each link. Cross-sections have no rotary inertia of their own.
 
+mod aba;
 mod across;
+mod energy;
+mod hybrid;
+mod inward;
 mod link;
+mod matrix;
 mod modes;
 mod outward;
+mod rnea;
 mod scratch;
 mod station;
 
+pub use aba::flexible_aba;
+pub use energy::{FlexiblePlacements, flexible_energy, flexible_placements, flexible_power, flexible_velocities};
+pub use hybrid::flexible_hybrid;
+pub use matrix::{FlexibleMatrices, flexible_mass_matrix};
+pub use rnea::flexible_rnea;
 pub use scratch::{
     FlexibleBody, FlexibleMode, FlexibleScratch, FlexibleStation, flexible_matrix_len, flexible_shapes_len,
 };

@@ -137,14 +137,16 @@ impl<'a, T: Scalar> Known<'a, T> {
         }
     }
 
-    /// Acceleration of body `i` and of its stations from that of what it hangs on, its joint's and its modes' being given.
-    pub(super) fn accelerate(&self, i: usize, qdd: T, scratch: &mut FlexibleScratch<T>, base: Motion<T>) {
+    /// Acceleration of body `i` from that of what it hangs on, its joint's being given; a floating root has its own.
+    pub(super) fn accelerate(&self, i: usize, qdd: &[T], scratch: &mut FlexibleScratch<T>, base: Motion<T>) {
         let body = &self.model.rigid.bodies[i];
+        if body.joint == JointKind::Floating {
+            return;
+        }
         let parent = self.of_parent(i, scratch, (|p| p.a, |p| p.a), base);
         let s = &mut scratch.bodies[i];
         // a = X a_p + c + S q̈
-        s.a = body.joint.moved(self.across(i, s).motion(parent) + s.c, qdd);
-        self.accelerate_stations(i, scratch);
+        s.a = body.joint.moved(self.across(i, s).motion(parent) + s.c, qdd[body.v_index()]);
     }
 
     /// Accelerations of the stations of body `i`.

@@ -37,16 +37,6 @@ impl<T: Scalar> FlexibleScratch<'_, T> {
         SizeError::check("scratch.shapes", self.shapes.len(), model.shapes.len())?;
         SizeError::check("scratch.matrix", self.matrix.len(), model.pairs.len())
     }
-
-    pub(super) fn reborrow(&mut self) -> FlexibleScratch<'_, T> {
-        FlexibleScratch {
-            bodies: self.bodies,
-            stations: self.stations,
-            modes: self.modes,
-            shapes: self.shapes,
-            matrix: self.matrix,
-        }
-    }
 }
 
 /// What is kept for one body.
