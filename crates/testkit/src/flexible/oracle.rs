@@ -95,11 +95,16 @@ impl<'a> FlexibleOracle<'a> {
         Torques { tau_j, tau }
     }
 
-    /// The inertia matrix of joints and modes: elastic rotors at rest in what carries them, rigidly geared ones turning along.
-    pub fn inertia(&self, s: &State) -> DMatrix<f64> {
+    /// The inertia matrix of joints and modes, elastic rotors at rest in what carries them and rigidly geared ones turning along; and
+    /// what couples elastic rotors to it, columns at their joints, zero elsewhere.
+    pub fn matrices(&self, s: &State) -> [DMatrix<f64>; 2] {
         let (size, p) = (self.nv() + self.modes(), self.projection());
-        let mass = mass_matrix(self, &self.x(s), size + self.rotors().len());
-        (p.transpose() * mass * p).view((0, 0), (size, size)).into_owned()
+        let mass = p.transpose() * mass_matrix(self, &self.x(s), size + self.rotors().len()) * p;
+        let mut coupling = DMatrix::zeros(size, size);
+        for (k, d) in self.elastic_rotors().enumerate() {
+            coupling.column_mut(d.joint).copy_from(&mass.view((0, size + k), (size, 1)));
+        }
+        [mass.view((0, 0), (size, size)).into_owned(), coupling]
     }
 
     /// Energies at a state; the elastic one is that of transmissions and bent links.

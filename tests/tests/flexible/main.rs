@@ -1,0 +1,4 @@
+//! Laws of robots whose links bend.
+
+mod dynamics;
+mod oracles;
