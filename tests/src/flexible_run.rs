@@ -1,6 +1,7 @@
 //! The core's algorithms of flexible links on owned vectors, with scratch as dirty as asked for.
 
 use crate::core_run::{Inputs, double, nan};
+use gyroflex::Scalar;
 use gyroflex::dynamics::{
     Acceleration, Energy, FlexibleBody, FlexibleMatrices, FlexibleMode, FlexiblePlacements, FlexibleScratch,
     FlexibleStation, Forward, Inverse, Power, flexible_aba, flexible_energy, flexible_hybrid, flexible_mass_matrix,
@@ -118,26 +119,46 @@ impl<T: Real> FlexibleCore<T> {
     }
 
     fn call<R>(&self, s: &Point, mut run: impl FnMut(&Inputs<T>, FlexibleScratch<'_, T>) -> Result<R, SizeError>) -> R {
-        let model = self.model();
-        let mut bodies = vec![FlexibleBody::new(); model.rigid().bodies().len()];
-        let mut stations = vec![FlexibleStation::new(); model.stations().len()];
-        let mut modes = vec![FlexibleMode::new(); model.modes()];
-        let mut shapes = vec![Motion::<T>::zero(); flexible_shapes_len(&model)];
-        let mut matrix = vec![nan::<T>(); flexible_matrix_len(&model)];
-        let mut once = |x: &Inputs<T>| {
-            let scratch = FlexibleScratch {
-                bodies: &mut bodies,
-                stations: &mut stations,
-                modes: &mut modes,
-                shapes: &mut shapes,
-                matrix: &mut matrix,
-            };
-            run(x, scratch).expect("slices fit the model")
-        };
+        let mut storage = FlexibleStorage::<T>::new(&self.model());
+        let mut once = |x: &Inputs<T>| run(x, storage.scratch()).expect("slices fit the model");
         let x = Inputs::new(s);
         if self.dirty {
             once(&x.spoilt());
         }
         once(&x)
+    }
+}
+
+/// Owns what a [`FlexibleScratch`] borrows.
+#[derive(Clone, Debug)]
+pub struct FlexibleStorage<T> {
+    bodies: Vec<FlexibleBody<T>>,
+    stations: Vec<FlexibleStation<T>>,
+    modes: Vec<FlexibleMode<T>>,
+    shapes: Vec<Motion<T>>,
+    matrix: Vec<T>,
+}
+
+impl<T: Scalar> FlexibleStorage<T> {
+    /// As much as a model needs.
+    pub fn new(model: &FlexibleModel<'_, T::Param>) -> Self {
+        Self {
+            bodies: vec![FlexibleBody::new(); model.rigid().bodies().len()],
+            stations: vec![FlexibleStation::new(); model.stations().len()],
+            modes: vec![FlexibleMode::new(); model.modes()],
+            shapes: vec![Motion::zero(); flexible_shapes_len(model)],
+            matrix: vec![T::from_f64(f64::NAN); flexible_matrix_len(model)],
+        }
+    }
+
+    /// The view the algorithms take.
+    pub fn scratch(&mut self) -> FlexibleScratch<'_, T> {
+        FlexibleScratch {
+            bodies: &mut self.bodies,
+            stations: &mut self.stations,
+            modes: &mut self.modes,
+            shapes: &mut self.shapes,
+            matrix: &mut self.matrix,
+        }
     }
 }

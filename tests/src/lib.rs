@@ -16,6 +16,6 @@ pub use core_run::Core;
 pub use elastic_motion::{random_motion, settling};
 pub use elastic_run::{LinkMotion, MotorMotion, orders_of, smoothness};
 pub use flexible_laws::{FlexibleTrial, for_flexible, small_flexible};
-pub use flexible_run::FlexibleCore;
+pub use flexible_run::{FlexibleCore, FlexibleStorage};
 pub use laws::{Trial, for_trials, small};
 pub use velocity_run::Coriolis;

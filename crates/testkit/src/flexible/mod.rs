@@ -15,6 +15,7 @@
 
 pub mod lagrange;
 mod oracle;
+pub mod paper;
 mod points;
 mod pose;
 mod records;

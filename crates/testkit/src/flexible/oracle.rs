@@ -224,7 +224,7 @@ impl<'a> FlexibleOracle<'a> {
     }
 
     /// `x`: positions of joints and modes, then one reflected motor position per drive, that of the joint behind a rigid gear.
-    fn x(&self, s: &State) -> Vec<f64> {
+    pub(super) fn x(&self, s: &State) -> Vec<f64> {
         let first = self.nq() - self.nv();
         let motor = |d: &DriveAt<'_>| if self.is_elastic(d) { s.theta[d.joint] } else { s.q[first + d.joint] };
         s.q.iter().copied().chain(self.rotors().iter().map(motor)).collect()

@@ -4,6 +4,7 @@ use super::lagrange::{Mechanism, Pair};
 use super::oracle::FlexibleOracle;
 use super::pose::{Pose, number, symmetric_about};
 use super::{BendingLink, Shapes};
+use crate::State;
 use gyroflex::Scalar;
 use gyroflex::model::{DriveSpec, JointKind};
 use gyroflex::spatial::{SpatialInertia, Vec3};
@@ -180,6 +181,20 @@ impl Mechanism for FlexibleOracle<'_> {
 }
 
 impl FlexibleOracle<'_> {
+    /// Where link frames and the frames of their sections are: origin, then axes, in the world.
+    pub fn placements(&self, s: &State) -> [Vec<f64>; 2] {
+        let x = self.x(s);
+        let placed = self.placed(&x);
+        let sections = self.links_and_modes().flat_map(|(link, first)| {
+            (0..link.sections.len()).map(|k| self.section(&placed, link, first, k)).collect::<Vec<_>>()
+        });
+        let sections: Vec<_> = sections.collect();
+        [placed.links.clone(), sections].map(|poses| {
+            let numbers = poses.iter().flat_map(|at| [at.origin, at.axes[0], at.axes[1], at.axes[2]]);
+            numbers.flat_map(Vec3::to_array).collect()
+        })
+    }
+
     /// `−Σ m g·c` [J].
     pub(super) fn gravity_energy<T: Scalar<Param = f64>>(&self, x: &[T]) -> T {
         let placed = self.placed(x);
@@ -198,12 +213,18 @@ impl FlexibleOracle<'_> {
     /// `½ ηᵀ K η` [J].
     pub(super) fn bending_energy<T: Scalar<Param = f64>>(&self, x: &[T]) -> T {
         let eta = &x[self.nq()..];
+        let of = |(link, first): (&BendingLink, usize)| link.bending_energy(&eta[first..first + link.modes()]);
+        self.links_and_modes().map(of).fold(T::zero(), |sum, e| sum + e)
+    }
+}
+
+impl BendingLink {
+    /// `½ ηᵀ K η` [J].
+    pub(super) fn bending_energy<T: Scalar>(&self, eta: &[T]) -> T {
         let mut sum = T::zero();
-        for (link, first) in self.links_and_modes() {
-            for ((j, k), stiffness) in
-                (0..link.modes()).flat_map(|k| (0..link.modes()).map(move |j| (j, k))).zip(link.stiffness.iter())
-            {
-                sum += eta[first + j] * eta[first + k] * T::from_f64(0.5 * stiffness);
+        for (j, a) in eta.iter().enumerate() {
+            for (k, b) in eta.iter().enumerate() {
+                sum += *a * *b * T::from_f64(0.5 * self.stiffness[(j, k)]);
             }
         }
         sum

@@ -71,6 +71,11 @@ impl<T: Scalar> Pose<T> {
         self.frame(Self::world().axes.map(turn), s + u - turn(s))
     }
 
+    /// The same turned by `1 + θ~` instead, which leaves the axes at right angles to first order only (Cetinkunt & Book, eq. 9).
+    pub(super) fn bent_linearly(&self, s: Vec3<f64>, u: Vec3<T>, theta: Vec3<T>) -> Self {
+        self.frame(Self::world().axes.map(|a| a + theta.cross(a)), number(s) + u)
+    }
+
     /// `½ ∫ |v|² dm` over a rigid body in this frame, `v = ṗ + Σ r_k ȧ_k` by origin and axes. No angular velocity is needed:
     /// `∫ r_k r_l dm = ½ tr(I) δ_kl − I_kl`.
     pub(super) fn rigid(&self, body: &SpatialInertia<f64>) -> impl Iterator<Item = Pair<T>> + use<T> {

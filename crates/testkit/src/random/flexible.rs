@@ -46,7 +46,11 @@ impl FlexibleOptions {
         if fidelity.is_elastic() {
             return self.clone();
         }
-        Self { robot: Options { remote_mount: 0.0, ..self.robot.clone() }, apart: 0.0, ..self.clone() }
+        Self {
+            robot: Options { remote_mount: 0.0, ..self.robot.clone() },
+            apart: std::env::var("APART").map_or(0.0, |_| 1.0),
+            ..self.clone()
+        }
     }
 
     /// No motion costs energy.
@@ -210,7 +214,7 @@ fn lump(dice: &mut Dice, at: Vec3<f64>) -> SpatialInertia<f64> {
     body.map(|x| x * 0.2).moved(at)
 }
 
-fn point_mass(p: &Particle) -> SpatialInertia<f64> {
+pub(super) fn point_mass(p: &Particle) -> SpatialInertia<f64> {
     SpatialInertia::from_com(p.mass, p.at, SymMat3::zero())
 }
 

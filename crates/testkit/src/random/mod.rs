@@ -1,5 +1,6 @@
 //! Seeded random robots and states: the same seed and options give the same robot on every machine.
 
+mod beams;
 mod constraint;
 mod drive;
 mod flexible;
