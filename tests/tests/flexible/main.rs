@@ -1,5 +1,7 @@
 //! Laws of robots whose links bend.
 
+mod closed_forms;
+mod defects;
 mod dynamics;
 mod energy;
 mod limits;

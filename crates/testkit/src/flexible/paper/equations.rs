@@ -90,7 +90,7 @@ impl CetinkuntBook {
                 self.gravity.dot(&(self.w(2 * i - 1, q, &[*p]) * (integrals.mg + bent)))
             };
             let mut sum: f64 = (p.element / 2 + 1..=self.links.len()).map(beyond).sum();
-            if p.element % 2 == 0 {
+            if p.element.is_multiple_of(2) {
                 let me = self.integrals[p.element / 2 - 1].me[p.index];
                 sum += self.gravity.dot(&(self.w(p.element - 1, q, &[]) * me));
             }
