@@ -2,6 +2,7 @@
 
 pub mod analyze;
 pub mod batch;
+pub mod beam;
 pub mod bench;
 pub mod compare;
 pub mod contact;
@@ -12,6 +13,7 @@ pub mod equilibrium;
 pub mod error;
 pub mod eval;
 pub mod export;
+pub mod flexible;
 pub mod gait;
 pub mod info;
 pub mod inverse;

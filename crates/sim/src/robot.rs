@@ -1,6 +1,7 @@
 //! A robot as loaded from files: the description in the user's frames, names, frames, and where every number came from.
 
 use crate::error::{Error, Warning};
+use crate::flexible::{Flexible, Place};
 use gyroflex::dynamics::Hold;
 use gyroflex::model::{Body, BodySpec, Fidelity, Knot, Model, RobotSpec};
 use gyroflex::spatial::{SpatialInertia, Transform, Vec3};
@@ -34,6 +35,8 @@ pub struct Robot {
     pub contacts: Vec<ContactPoint>,
     /// What is held beside the joints, all the time.
     pub held: Vec<HeldPart>,
+    /// The links that bend.
+    pub flexible: Flexible,
 }
 
 /// A point that may touch the ground.
@@ -61,12 +64,16 @@ pub struct HeldPart {
 /// A load fixed to a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Payload {
-    /// The body that carries it; `None` rests on the world.
+    /// Index of the link that carries it, in [`Robot::links`].
+    pub link: usize,
+    /// The body of that link; `None` rests on the world.
     pub body: Option<usize>,
     /// Its inertia about the origin of that body's link frame.
     pub inertia: SpatialInertia<f64>,
     /// Inertia of that body without it.
     pub unloaded: SpatialInertia<f64>,
+    /// The station of a link that bends that it is on, and what is on it without the load.
+    pub station: Option<(Place, SpatialInertia<f64>)>,
 }
 
 /// A joint by its names and limits.
@@ -153,18 +160,36 @@ impl Robot {
         Ok(OwnedModel { bodies, knots, gravity: self.gravity, fidelity })
     }
 
-    /// Puts a load on the robot in place of the one it carries: the body, and the load's inertia about the origin of that body's link
-    /// frame. `None` takes the load off.
-    pub fn set_payload(&mut self, load: Option<(Option<usize>, SpatialInertia<f64>)>) {
-        if let Some(Payload { body: Some(body), unloaded, .. }) = self.payload.take() {
+    /// Puts a load on the robot in place of the one it carries: the index of the link that carries it in [`Robot::links`], and the
+    /// load's inertia about the origin of that link's body. `None` takes the load off.
+    pub fn set_payload(&mut self, load: Option<(usize, SpatialInertia<f64>)>) {
+        if let Some(Payload { body: Some(body), unloaded, station, .. }) = self.payload.take() {
             self.bodies[body].inertia = unloaded;
+            if let Some((place, before)) = station {
+                self.flexible.links[place.link].stations[place.station].inertia = before;
+            }
         }
-        let Some((body, inertia)) = load else { return };
+        let Some((link, inertia)) = load else { return };
+        let body = self.links[link].body;
         let unloaded = body.map_or(SpatialInertia::zero(), |b| self.bodies[b].inertia);
         if let Some(body) = body {
             self.bodies[body].inertia = unloaded + inertia;
         }
-        self.payload = Some(Payload { body, inertia, unloaded });
+        let station = self.load_station(link, inertia);
+        self.payload = Some(Payload { link, body, inertia, unloaded, station });
+    }
+
+    /// Puts a load on the station of a link that bends: where the fixed link that carries it is, or on the link itself next to the
+    /// load's centre of mass. The station, and what was on it before.
+    fn load_station(&mut self, link: usize, inertia: SpatialInertia<f64>) -> Option<(Place, SpatialInertia<f64>)> {
+        let centre = if inertia.mass > 0.0 { inertia.first_moment.scale(1.0 / inertia.mass) } else { Vec3::zero() };
+        let (link, x) = self.flexible.place_of(&self.links, link, centre)?;
+        let flexure = &mut self.flexible.links[link];
+        let station = flexure.station_at(x, "payload");
+        let on_it = &mut flexure.stations[station].inertia;
+        let before = *on_it;
+        *on_it = before + inertia;
+        Some((Place { link, station }, before))
     }
 
     /// Number of single-degree-of-freedom joints: all but a floating root.

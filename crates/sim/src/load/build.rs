@@ -3,6 +3,7 @@
 use super::dialects::{Tags, TagsByJoint};
 use super::drives;
 use super::file::{DriveFile, RobotFile};
+use super::flexible::FlexibleFiles;
 use super::fuse::{Bodies, fuse};
 use super::held::HeldFiles;
 use super::merge::Merge;
@@ -12,6 +13,7 @@ use super::tree::{JointElement, Tree};
 use super::yaml::{Keys, Yaml};
 use super::{LoadOptions, defect};
 use crate::error::{Error, Warning};
+use crate::flexible::Flexible;
 use crate::robot::{Joint, Robot};
 use gyroflex::model::Fidelity;
 use gyroflex::spatial::Vec3;
@@ -73,7 +75,12 @@ pub(crate) fn build(
         payload: None,
         contacts: Vec::new(),
         held: Vec::new(),
+        flexible: Flexible::default(),
     };
+    if let Some(yaml) = yaml {
+        let RobotFile { flexible_links, drives, .. } = &yaml.value;
+        FlexibleFiles { links: flexible_links, drives, tree, keys: &yaml.keys }.put_on(&mut robot)?;
+    }
     if let Some(yaml) = yaml {
         let RobotFile { contacts, constraints, couplings, .. } = &yaml.value;
         HeldFiles { contacts, constraints, couplings }.put_on(&mut robot, &yaml.keys)?;

@@ -37,7 +37,7 @@ pub(crate) fn explain(e: &ModelError, robot: &Robot, file: String) -> Error {
 fn key(defect: &Defect) -> Option<&'static str> {
     match defect {
         Defect::ZeroGearRatio => Some("gear_ratio"),
-        Defect::MountNotAncestor => Some("rotor.mount"),
+        Defect::MountNotAncestor | Defect::RemoteRigidRotor => Some("rotor.mount"),
         Defect::RotorTooFlat { .. } => Some("rotor.transverse_inertia"),
         Defect::SpringTableNotIncreasing => Some("transmission.table"),
         Defect::TransmissionErrorTooSteep(_) => Some("transmission.error"),
@@ -91,6 +91,12 @@ fn remedy(defect: &Defect) -> &'static str {
         Defect::RotorTooFlat { .. } => "give at least half of `rotor.inertia`, or leave it out",
         Defect::SpringTableNotIncreasing => "list points [deflection, torque], both columns strictly increasing",
         Defect::TransmissionErrorTooSteep(_) => "make `amplitude` or `cycles_per_rotor_turn` smaller",
+        Defect::RemoteRigidRotor => {
+            "name the joint's parent link in `rotor.mount`, or give its `transmission` a stiffness"
+        }
+        Defect::FlexibleRecords(_) | Defect::NoStation => {
+            "describe the link under `flexible_links` of the robot's YAML"
+        }
         Defect::TooFewKnots | Defect::TooFewBodies => "the robot is too large: at most 65534 joints and spring points",
     }
 }

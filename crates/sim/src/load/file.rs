@@ -1,7 +1,7 @@
 //! What a robot YAML may contain: the drives that a URDF has no words for.
 
-use super::PayloadFile;
 use super::held::{ConstraintFile, ContactFile, CouplingFile};
+use super::{FlexibleLinkFile, PayloadFile};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer};
@@ -39,6 +39,9 @@ pub struct RobotFile {
     /// Joints that follow other joints, by name.
     #[serde(default)]
     pub couplings: BTreeMap<String, CouplingFile>,
+    /// Links that bend, by name: beams in assumed modes, in place of the URDF's inertia of the link.
+    #[serde(default)]
+    pub flexible_links: BTreeMap<String, FlexibleLinkFile>,
     /// The drives by joint name. Joints without an entry have what the URDF itself says.
     #[serde(default)]
     pub drives: BTreeMap<String, DriveFile>,

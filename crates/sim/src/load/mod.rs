@@ -10,6 +10,7 @@ pub(crate) mod defect;
 mod dialects;
 mod drives;
 pub mod file;
+mod flexible;
 mod fuse;
 mod held;
 mod ignored;
@@ -28,6 +29,10 @@ mod xml;
 pub mod yaml;
 
 pub use file::{Mimic, robot_schema};
+pub use flexible::{
+    AtFile, AtName, BodyFile, BoundaryName, DampingFile, FlexibleLinkFile, InertiaFile, LumpFile, ModesFile,
+    OriginFile, ProfileFile, ShapeFile, TipFile,
+};
 pub use held::{AnchorFile, ConstraintFile, ContactFile, CouplingFile, Direction, DirectionsFile, DirectionsName};
 pub use payload::PayloadFile;
 pub use source::{Disk, Embedded, FileSource};

@@ -68,15 +68,16 @@ impl PayloadFile {
     /// Numbers that no body has, or a link that the robot does not have.
     pub(crate) fn put_on(&self, robot: &mut Robot, keys: &Keys, path: &str) -> Result<(), Error> {
         self.check(keys, path)?;
-        let Some(link) = robot.links.iter().find(|l| l.name == self.link) else {
+        let Some(index) = robot.links.iter().position(|l| l.name == self.link) else {
             let near = nearest(&self.link, robot.links.iter().map(|l| l.name.as_str())).unwrap_or("none");
             let problem = format!("there is no link `{}`", self.link);
             let remedy = format!("name a link of the robot; the nearest one is `{near}`");
             return Err(keys.error(&format!("{path}.link"), problem, remedy));
         };
         let own = SpatialInertia::from_com(self.mass, Vec3::from(self.xyz), self.about_com());
+        let link = &robot.links[index];
         let (body, inertia) = (link.body, own.seen_from_parent(link.placement));
-        robot.set_payload(Some((body, inertia)));
+        robot.set_payload(Some((index, inertia)));
         self.tell(robot, keys, path, body);
         Ok(())
     }

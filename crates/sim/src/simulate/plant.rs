@@ -56,11 +56,11 @@ pub(super) fn plant(nominal: &Robot, plant: &Plant, keys: &Keys) -> Result<Robot
         put.map_err(|e| Error { kind: ErrorKind::Scenario, ..e })?;
     }
     if let Some(factor) = plant.payload_factor {
-        let Some(Payload { body, inertia, .. }) = robot.payload else {
+        let Some(Payload { link, inertia, .. }) = robot.payload else {
             let problem = "the robot carries no load, so that the factor changes nothing";
             return Err(fault(keys, "plant.payload_factor", problem, "give the robot a `payload`, or remove it"));
         };
-        robot.set_payload(Some((body, inertia.map(|x| x * factor))));
+        robot.set_payload(Some((link, inertia.map(|x| x * factor))));
     }
     Ok(robot)
 }

@@ -224,6 +224,7 @@ fn lowered(bodies: &[BodySpec], gravity: Vec3<f64>) -> Result<OwnedModel, Error>
         payload: None,
         contacts: Vec::new(),
         held: Vec::new(),
+        flexible: crate::flexible::Flexible::default(),
     };
     robot.model(Fidelity::RigidReflected)
 }
