@@ -14,7 +14,7 @@ fn arm<T: Scalar<Param = T> + 'static>(
 ) {
     let mut arm = Beams::<T>::new(links, modes, elastic);
     let joints = if elastic { "elastic" } else { "rigid" };
-    let name = if algorithm == FlexibleAlgorithm::Forward { "forward" } else { "hybrid" };
+    let name = algorithm.name();
     let mut i = 0;
     c.bench_function(&format!("flexible/{name}/{links} links/{modes} modes each/{joints} joints/{scalar}"), |b| {
         b.iter(|| {
@@ -29,7 +29,9 @@ fn flexible(c: &mut Criterion) {
         arm::<f64>(c, (2, 2, elastic), FlexibleAlgorithm::Forward, "f64");
         arm::<f32>(c, (2, 2, elastic), FlexibleAlgorithm::Forward, "f32");
     }
-    arm::<f64>(c, (2, 2, false), FlexibleAlgorithm::Hybrid, "f64");
+    for algorithm in [FlexibleAlgorithm::Inverse, FlexibleAlgorithm::Hybrid] {
+        arm::<f64>(c, (2, 2, false), algorithm, "f64");
+    }
     for modes in [0, 1, 2, 4, 8] {
         arm::<f64>(c, (2, modes, true), FlexibleAlgorithm::Forward, "f64");
     }

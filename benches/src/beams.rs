@@ -4,7 +4,7 @@ use crate::STATES;
 use gyroflex::Scalar;
 use gyroflex::dynamics::{
     Acceleration, External, FlexibleBody, FlexibleMode, FlexibleScratch, FlexibleStation, Forward, Inverse, State,
-    flexible_aba, flexible_hybrid, flexible_matrix_len, flexible_shapes_len,
+    flexible_aba, flexible_hybrid, flexible_matrix_len, flexible_rnea, flexible_shapes_len,
 };
 use gyroflex::model::{
     Body, BodySpec, DriveSpec, Fidelity, FlexibleLink, FlexibleModel, FlexibleRecords, Friction, JointKind, Mode,
@@ -22,8 +22,21 @@ const POINTS: usize = 200;
 pub enum FlexibleAlgorithm {
     /// [`flexible_aba`].
     Forward,
+    /// [`flexible_rnea`].
+    Inverse,
     /// [`flexible_hybrid`].
     Hybrid,
+}
+
+impl FlexibleAlgorithm {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Forward => "forward",
+            Self::Inverse => "inverse",
+            Self::Hybrid => "hybrid",
+        }
+    }
 }
 
 /// A planar arm of uniform links of one metre and one kilogram, each bending in `modes` modes, with random states and storage for calls.
@@ -73,6 +86,11 @@ impl<T: Scalar + 'static> Beams<T> {
             FlexibleAlgorithm::Forward => {
                 let out = Forward { qdd: a, thetadd: b, tau_j: c };
                 flexible_aba(&self.model, state, tau, External::none(), scratch, out)
+            }
+            FlexibleAlgorithm::Inverse => {
+                let accel = Acceleration { qdd: tau, thetadd: tau };
+                let out = Inverse { tau_j: a, tau: b };
+                flexible_rnea(&self.model, state, accel, External::none(), scratch, out)
             }
             FlexibleAlgorithm::Hybrid => {
                 let accel = Acceleration { qdd: tau, thetadd: tau };

@@ -77,7 +77,9 @@ impl<'s> FlexibleRecords<'s> {
             if !self.is_on(parent, body.parent) || !self.is_on(rotor, mount) {
                 return Err(ModelError { body: i, defect: Defect::NoStation });
             }
-            if rigid.bodies[i].has_remote_rigid_rotor() {
+            // What a rigidly geared rotor asks of its carrier must be asked of what the joint sits on.
+            let apart = rigid.bodies[i].rigid_rotor().is_some() && rotor.is_some() && rotor != parent;
+            if rigid.bodies[i].has_remote_rigid_rotor() || apart {
                 return Err(ModelError { body: i, defect: Defect::RemoteRigidRotor });
             }
         }
