@@ -11,8 +11,7 @@ use pyo3::prelude::*;
 const ROOT: usize = 6;
 
 const POSITIONS: &str = "give one entry per position coordinate, in the order of `joint_names`, then `mode_names`; a floating root leads with x y z qx qy qz qw";
-const VELOCITIES: &str =
-    "give one entry per velocity coordinate, in the order of `joint_names`, then `mode_names`; a floating root leads with six";
+const VELOCITIES: &str = "give one entry per velocity coordinate, in the order of `joint_names`, then `mode_names`; a floating root leads with six";
 
 /// Which entry of an array belongs to what.
 #[derive(Clone, Copy, Debug)]

@@ -192,7 +192,8 @@ impl Recorder for Tips {
             self.moving = self.actual.len() + 1;
         }
         self.last_reference.clone_from(&sample.reference);
-        let (actual, wanted) = (self.place(&sample.q, &sample.eta)?, self.place(&sample.reference, &vec![0.0; sample.eta.len()])?);
+        let (actual, wanted) =
+            (self.place(&sample.q, &sample.eta)?, self.place(&sample.reference, &vec![0.0; sample.eta.len()])?);
         self.actual.push(actual);
         self.wanted.push(wanted);
         Ok(())

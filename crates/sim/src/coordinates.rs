@@ -112,7 +112,8 @@ impl Coordinates {
             })
         };
         spread(values, self.modes.len(), find, |given| {
-            let problem = format!("the list has {given} entries, but the robot's links have {} modes", self.modes.len());
+            let problem =
+                format!("the list has {given} entries, but the robot's links have {} modes", self.modes.len());
             fault(keys, key, problem, format!("give one number per mode, in this order: {}", self.modes.join(", ")))
         })
     }

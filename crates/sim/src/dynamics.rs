@@ -8,12 +8,12 @@ mod matrices;
 
 use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
-use bending::{Bending, Storage};
 pub(crate) use bending::Direction;
+use bending::{Bending, Storage};
 use constrained::ConstraintStorage;
 use gyroflex::dynamics::{
-    self, AbaScratch, Acceleration, CrbaScratch, DerivativeScratch, Energy, External, FlexibleMatrices, Forward, ForwardScratch, Inverse,
-    JointSpaceScratch, Power, RneaScratch, State,
+    self, AbaScratch, Acceleration, CrbaScratch, DerivativeScratch, Energy, External, FlexibleMatrices, Forward,
+    ForwardScratch, Inverse, JointSpaceScratch, Power, RneaScratch, State,
 };
 use gyroflex::integrate::{self, StateMut};
 use gyroflex::model::{Model, SizeError};

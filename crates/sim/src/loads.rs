@@ -168,7 +168,9 @@ impl Loads {
 pub(crate) fn beside_the_root(robot: &Robot, link: &str, point: [f64; 3]) -> Option<String> {
     let bends = robot.flexible.links.iter().any(|l| l.name == link);
     let problem = || {
-        format!("link `{link}` bends, and a wrench on it acts on its root, not at {point:?}: which cross-section carries it is not said")
+        format!(
+            "link `{link}` bends, and a wrench on it acts on its root, not at {point:?}: which cross-section carries it is not said"
+        )
     };
     (bends && point != [0.0; 3]).then(problem)
 }

@@ -237,6 +237,9 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model, and loads under which no equilibrium is found.
     pub fn settle(&mut self, q: &mut [f64], ext: External<f64>) -> Result<(), Error> {
+        if self.modes() == 0 {
+            return Ok(());
+        }
         let rest = vec![0.0; self.nv()];
         self.settle_in_motion(q, &rest, &rest, ext)
     }
@@ -277,7 +280,8 @@ impl Dynamics {
             file: String::new(),
             element: format!("flexible_links.{}", self.model.first_bending_link().unwrap_or_default()),
             problem: "no deflection was found at which the links hang at rest".to_owned(),
-            remedy: "check that the links are stiff enough for their loads, or give the modal coordinates (`eta`)".to_owned(),
+            remedy: "check that the links are stiff enough for their loads, or give the modal coordinates (`eta`)"
+                .to_owned(),
         })
     }
 
@@ -291,7 +295,9 @@ impl Dynamics {
     ) -> Result<(DVector<f64>, DMatrix<f64>), Error> {
         let n = self.modes();
         let (mut force, mut slope) = (DVector::zeros(n), DMatrix::zeros(n, n));
-        let (Some(model), Some(bending)) = (self.model.flexible(), &mut self.bending) else { return Ok((force, slope)) };
+        let (Some(model), Some(bending)) = (self.model.flexible(), &mut self.bending) else {
+            return Ok((force, slope));
+        };
         let nv = model.rigid().nv();
         let zeros = |n| vec![Dual::constant(0.0); n];
         let constant = |v: &[f64]| v.iter().map(|x| Dual::constant(*x)).collect::<Vec<_>>();

@@ -21,9 +21,10 @@ impl Dynamics {
         let n = self.nv();
         let rates: Vec<[Vec<f64>; 2]> = self.inertia_slopes(state.q)?;
         let (qd, thetad) = (state.qd, state.thetad);
-        let (m, s) = (|k: usize, i: usize, j: usize| rates[k][0][i * n + j], |k: usize, i: usize, j: usize| {
-            rates[k][1][i * n + j]
-        });
+        let (m, s) = (
+            |k: usize, i: usize, j: usize| rates[k][0][i * n + j],
+            |k: usize, i: usize, j: usize| rates[k][1][i * n + j],
+        );
         for i in 0..n {
             for j in 0..n {
                 let (mut c, mut c1, mut c2) = (0.0, 0.0, 0.0);

@@ -3,8 +3,8 @@
 use super::input::{Wrench, WrenchAxes, fault};
 use crate::bending::CrossSection;
 use crate::error::Error;
-use crate::loads::{NAME_A_FIXED_LINK, beside_the_root};
 use crate::load::nearest::nearest;
+use crate::loads::{NAME_A_FIXED_LINK, beside_the_root};
 use crate::robot::Robot;
 use gyroflex::spatial::{Force, Transform, Vec3};
 

@@ -95,7 +95,8 @@ fn linearized(
 /// that bend.
 fn hold_motors(linear: &mut Linearization, linearizer: &Linearizer, robot: &Robot) {
     let half = linearizer.layout().positions();
-    let moves = |k: &usize| linearizer.layout().elastic().contains(k) || robot.bodies.get(*k).is_none_or(|b| b.drive.is_none());
+    let moves =
+        |k: &usize| linearizer.layout().elastic().contains(k) || robot.bodies.get(*k).is_none_or(|b| b.drive.is_none());
     let positions: Vec<usize> = (0..linearizer.layout().nv()).filter(moves).collect();
     let kept: Vec<usize> = positions.iter().copied().chain(positions.iter().map(|k| half + k)).collect();
     linear.a = linear.a.select_rows(&kept).select_columns(&kept);

@@ -192,7 +192,9 @@ impl Sampler {
             sample.friction[i] += drive.rotor.reflected_friction(sample.thetad[i]);
         }
         let (joints, eta) = (state.qd.len() - self.joints.modes.len(), dynamics.eta(state.q));
-        for (to, from) in [(&mut sample.eta, eta), (&mut sample.etad, &state.qd[joints..]), (&mut sample.etadd, &self.qdd[joints..])] {
+        for (to, from) in
+            [(&mut sample.eta, eta), (&mut sample.etad, &state.qd[joints..]), (&mut sample.etadd, &self.qdd[joints..])]
+        {
             to.clear();
             to.extend_from_slice(from);
         }

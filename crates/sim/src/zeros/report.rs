@@ -124,7 +124,10 @@ fn judge_modes(all: &[(AtPose, f64)]) -> (Verdict, String) {
     match rate {
         _ if rate > rounding => (
             Verdict::Unstable,
-            format!("mode `{}` falls away with {rate:.3e} 1/s at q = {q:?}: gravity beats the link's stiffness", zero.joint),
+            format!(
+                "mode `{}` falls away with {rate:.3e} 1/s at q = {q:?}: gravity beats the link's stiffness",
+                zero.joint
+            ),
         ),
         _ if rate >= -rounding => {
             (Verdict::Undamped, format!("mode `{}` swings on without damping, at q = {q:?}", zero.joint))

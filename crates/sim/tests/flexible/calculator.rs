@@ -6,8 +6,7 @@ use gyroflex_sim::Robot;
 use gyroflex_sim::eval::{Answer, Evaluator, Options, Query};
 use gyroflex_sim::simulate::StateVec;
 
-const ALL: Options =
-    Options { fidelity: None, matrices: true, energy: true, significance: false, motor_side: false };
+const ALL: Options = Options { fidelity: None, matrices: true, energy: true, significance: false, motor_side: false };
 
 /// A query at a state.
 fn query(robot: &Robot, at: &StateVec) -> Query {
@@ -39,7 +38,8 @@ fn matrices_and_accelerations_obey_the_equations_of_motion() {
         let tau = numbers(8, 3);
         let tau_eta = numbers(9, robot.flexible.modes());
         let asked = Query { tau: Some(tau.clone()), tau_eta: Some(tau_eta.clone()), ..query(&robot, &at) };
-        let Answer { qdd, thetadd, tau_j, etadd, m, s, g, k, d, velocity_matrices, .. } = evaluator.evaluate(&asked).unwrap();
+        let Answer { qdd, thetadd, tau_j, etadd, m, s, g, k, d, velocity_matrices, .. } =
+            evaluator.evaluate(&asked).unwrap();
         let (qdd, etadd, moving) = (qdd.unwrap(), etadd.unwrap(), velocity_matrices.unwrap());
         let with_modes = |v: Vec<f64>| [v, vec![0.0; etadd.len()]].concat();
         let all = [qdd.clone(), etadd.clone()].concat();
@@ -72,7 +72,8 @@ fn inverse_dynamics_returns_what_forward_dynamics_was_given() {
         let forward = Query { tau: Some(tau.clone()), tau_eta: Some(tau_eta.clone()), ..query(&robot, &at) };
         let found = evaluator.evaluate(&forward).unwrap();
         let (qdd, thetadd, etadd) = (found.qdd, found.thetadd, found.etadd.unwrap());
-        let inverse = Query { qdd: qdd.clone(), thetadd: thetadd.clone(), etadd: Some(etadd.clone()), ..query(&robot, &at) };
+        let inverse =
+            Query { qdd: qdd.clone(), thetadd: thetadd.clone(), etadd: Some(etadd.clone()), ..query(&robot, &at) };
         let back = evaluator.evaluate(&inverse).unwrap();
         assert_close("tau_eta", &back.tau_eta.unwrap(), &tau_eta, 1e-9);
         if model == "rigid" {
@@ -144,7 +145,11 @@ fn keys_of_modes_are_named_where_they_do_not_fit() {
     let mut evaluator = Evaluator::new(robot, Options::default()).unwrap();
     let mut error = |line: &str| evaluator.evaluate_line(line).unwrap_err().to_string();
     let text = error(r#"{"q": [0, 0, 0], "qd": [0, 0, 0], "tau": [0, 0, 0], "eta": [0.1]}"#);
-    assert!(text.contains("eta: 1 entries are given, but 6 are expected") && text.contains("upper.bending_y1, upper.bending_y2"), "{text}");
+    assert!(
+        text.contains("eta: 1 entries are given, but 6 are expected")
+            && text.contains("upper.bending_y1, upper.bending_y2"),
+        "{text}"
+    );
     let text = error(r#"{"q": [0, 0, 0], "qd": [0, 0, 0], "tau": [0, 0, 0], "etadd": [0, 0, 0, 0, 0, 0]}"#);
     assert!(text.contains("forward dynamics computes them"), "{text}");
     let text = error(r#"{"q": [0, 0, 0], "qd": [0, 0, 0], "qdd": [0, 0, 0], "tau_eta": [0, 0, 0, 0, 0, 0]}"#);

@@ -124,7 +124,10 @@ fn derivatives_of_forward_dynamics_are_limits_of_differences() {
                         let size = slope.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
                         for row in 0..nv {
                             let apart = (matrix[(row, k)] - slope[row]).abs();
-                            assert!(apart < 2e-5 * size, "{model} {floating} {i} block {block} ({row}, {k}): {apart} of {size}");
+                            assert!(
+                                apart < 2e-5 * size,
+                                "{model} {floating} {i} block {block} ({row}, {k}): {apart} of {size}"
+                            );
                         }
                     }
                 }

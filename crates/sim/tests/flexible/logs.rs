@@ -5,7 +5,8 @@ use gyroflex_sim::Simulation;
 use gyroflex_sim::record::{CsvRecorder, McapRecorder, MemoryRecorder, TeeRecorder, columns, read_states};
 use std::ops::ControlFlow;
 
-const RUN: &str = "duration: 0.02\ninitial: {qd: {shoulder: 1.0}}\nlog: {rate: 500}\nintegrator: {method: rk4, step: 2e-5}\n";
+const RUN: &str =
+    "duration: 0.02\ninitial: {qd: {shoulder: 1.0}}\nlog: {rate: 500}\nintegrator: {method: rk4, step: 2e-5}\n";
 
 #[test]
 fn modes_and_tips_have_columns_by_name_with_units() {
@@ -13,7 +14,10 @@ fn modes_and_tips_have_columns_by_name_with_units() {
     let simulation = Simulation::new(&robot, &scenario(RUN)).unwrap();
     let all = columns(&simulation.run_info());
     let unit = |name: &str| all.iter().find(|c| c.name == name).unwrap_or_else(|| panic!("no {name}")).unit;
-    assert_eq!([unit("eta.upper.bending_y2"), unit("etad.upper.bending_y2"), unit("etadd.upper.bending_y2")], ["m", "m/s", "m/s^2"]);
+    assert_eq!(
+        [unit("eta.upper.bending_y2"), unit("etad.upper.bending_y2"), unit("etadd.upper.bending_y2")],
+        ["m", "m/s", "m/s^2"]
+    );
     assert_eq!([unit("eta.upper.torsion1"), unit("etadd.upper.torsion1")], ["rad", "rad/s^2"]);
     assert_eq!([unit("tip.upper.x"), unit("tip.lower.rz")], ["m", "rad"]);
     let (_, table, _) = run(&robot, RUN);

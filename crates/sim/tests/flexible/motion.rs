@@ -49,7 +49,8 @@ fn what_dampers_and_motors_do_is_what_the_energy_changes_by() {
 fn schemes_agree_on_links_that_bend() {
     let robot = tree("complete", 0.02, false);
     let end = |integrator: &str| {
-        let (_, _, simulation) = run(&robot, &format!("{SWING}integrator: {integrator}\n").replace("0.4\ninitial", "0.05\ninitial"));
+        let (_, _, simulation) =
+            run(&robot, &format!("{SWING}integrator: {integrator}\n").replace("0.4\ninitial", "0.05\ninitial"));
         let state = simulation.state();
         [state.q.clone(), state.qd.clone(), state.theta.clone()].concat()
     };
@@ -67,7 +68,10 @@ fn schemes_agree_on_links_that_bend() {
 #[test]
 fn a_floating_arm_keeps_its_energy_too() {
     let robot = tree("complete", 0.0, true);
-    let (summary, ..) = run(&robot, &format!("{SWING}integrator: {{method: rk4, step: 1e-5}}\n").replace("0.4\ninitial", "0.1\ninitial"));
+    let (summary, ..) = run(
+        &robot,
+        &format!("{SWING}integrator: {{method: rk4, step: 1e-5}}\n").replace("0.4\ninitial", "0.1\ninitial"),
+    );
     assert!(summary.energy_drift.unwrap() < 1e-7, "{:?}", summary.energy_drift);
 }
 
@@ -75,7 +79,8 @@ const REACH: &str = "duration: 0.6\nreference:\n  shoulder: {type: polynomial, f
     elbow: {type: polynomial, from: -0.4, to: 0.5, start: 0, duration: 0.5, order: 3}\n  slide: {type: hold, at: 0.05}\nlog: {rate: 2000}\n";
 
 fn invert(robot: &gyroflex_sim::Robot, text: &str) -> (Table, InverseRun, Vec<String>) {
-    let mut inverse = InverseRun::new(robot, &scenario(text), None, 0.0, InverseOutput::Link).expect("it can be inverted");
+    let mut inverse =
+        InverseRun::new(robot, &scenario(text), None, 0.0, InverseOutput::Link).expect("it can be inverted");
     let mut recorder = MemoryRecorder::new(inverse.run_info());
     let summary = inverse.run(&mut recorder, &mut |_| ControlFlow::Continue(())).expect("it runs");
     let named = summary.warnings.clone();
@@ -117,7 +122,8 @@ fn an_open_loop_under_the_inverse_follows_the_reference() {
     let (table, ..) = invert(&robot, &text);
     let tau: Vec<&[f64]> = ["tau.shoulder", "tau.elbow", "tau.slide"].map(|n| table.get(n).unwrap()).to_vec();
     let mut dynamics = gyroflex_sim::Dynamics::new(robot.model(robot.fidelity).unwrap());
-    let names: Vec<String> = gyroflex_sim::coordinates::Coordinates::of(&robot).names().map(|n| format!("q.{n}")).collect();
+    let names: Vec<String> =
+        gyroflex_sim::coordinates::Coordinates::of(&robot).names().map(|n| format!("q.{n}")).collect();
     let all: Vec<String> = names.into_iter().chain(robot.mode_names().iter().map(|m| format!("eta.{m}"))).collect();
     let start = |i: usize| -> Vec<f64> { all.iter().map(|n| table.get(n).unwrap()[i]).collect() };
     let n = all.len();
@@ -135,13 +141,17 @@ fn an_open_loop_under_the_inverse_follows_the_reference() {
 #[test]
 fn links_without_damping_are_said_to_swing_on() {
     let (_, inverse, warnings) = invert(&tree("rigid", 0.0, false), REACH);
-    assert!(warnings[0].contains("swings on without damping") && warnings[0].contains("give the links damping"), "{warnings:?}");
+    assert!(
+        warnings[0].contains("swings on without damping") && warnings[0].contains("give the links damping"),
+        "{warnings:?}"
+    );
     assert!(inverse.run_info().modes.contains(&"lower.bending_z1".to_owned()));
 }
 
 #[test]
 fn a_shaper_takes_its_modes_from_links_that_bend() {
-    let robot = beam(2, "", [0.0; 3], "drives:\n  hinge: {rotor: {inertia: 0.01}, gear_ratio: 10, transmission: rigid}\n");
+    let robot =
+        beam(2, "", [0.0; 3], "drives:\n  hinge: {rotor: {inertia: 0.01}, gear_ratio: 10, transmission: rigid}\n");
     let text = "duration: 0.5\nreference: {hinge: {type: polynomial, from: 0, to: 0.3, start: 0, duration: 0.2, order: 3}}\n\
         controller: {type: pd, rate: 1000, kp: 400, kd: 40}\nshaper: {type: zv, modes: {count: 1, motors: held}}\nlog: {rate: 100}\n\
         integrator: {method: rk4, step: 5e-5}\n";
