@@ -12,6 +12,7 @@ link side of the gear.
 
 from ._gyroflex import (
     ConstrainedMotion,
+    ConstrainedTorques,
     Constraint,
     ElasticInverse,
     FrequencyResponse,
@@ -38,6 +39,7 @@ from .simulation import SimulationResult, simulate
 __all__ = [
     "ArgumentError",
     "ConstrainedMotion",
+    "ConstrainedTorques",
     "Constraint",
     "DivergedError",
     "ElasticInverse",
