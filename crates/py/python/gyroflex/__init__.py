@@ -34,13 +34,14 @@ from .errors import (
     ScenarioError,
     ShapeError,
 )
-from .simulation import SimulationResult, simulate
+from .simulation import ContactImpact, SimulationResult, simulate
 
 __all__ = [
     "ArgumentError",
     "ConstrainedMotion",
     "ConstrainedTorques",
     "Constraint",
+    "ContactImpact",
     "DivergedError",
     "ElasticInverse",
     "Error",

@@ -624,6 +624,7 @@ def run_scenario(
     tuple[str, ...],
     dict[str, str],
     list[str],
+    tuple[tuple[float, float, tuple[str, ...], _Matrix, _Matrix, _Matrix], ...],
     DivergedError | None,
 ]:
-    """Arrays and units by name, names of the joints, metadata, warnings, and the error of a run that diverged."""
+    """Arrays and units by name, names of the joints, metadata, warnings, impacts, and the error of a run that diverged."""
