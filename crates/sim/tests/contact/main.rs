@@ -7,6 +7,7 @@ mod held;
 mod impacts;
 mod loops;
 mod machines;
+mod pinned;
 mod refusals;
 mod rotors;
 mod slides;
