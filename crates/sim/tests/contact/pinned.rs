@@ -31,17 +31,17 @@ fn biped_topples_about_its_pinned_toe_and_keeps_its_energy() {
         // hip_x, hip_z, trunk_pitch, left_hip, left_knee; thigh and shank with the lengths of the README
         let [x, z, pitch, hip, knee] = sample.q[..5] else { panic!("five coordinates lead to the foot") };
         let (thigh, shank) = (pitch + hip, pitch + hip + knee);
-        assert_near("toe ahead", x - 0.302 * thigh.sin() - 0.332 * shank.sin(), 0.0, 1e-9);
-        assert_near("toe up", z - 0.302 * thigh.cos() - 0.332 * shank.cos(), 0.0, 1e-9);
+        assert_near("toe ahead", x - 0.302 * thigh.sin() - 0.332 * shank.sin(), 0.0, 1e-8);
+        assert_near("toe up", z - 0.302 * thigh.cos() - 0.332 * shank.cos(), 0.0, 1e-8);
     }
-    assert!(summary.constraint_drift.expect("a pin holds it") < 1e-9, "{:?}", summary.constraint_drift);
+    assert!(summary.constraint_drift.expect("a pin holds it") < 1e-8, "{:?}", summary.constraint_drift);
 }
 
-/// Ground that only pushes, with friction enough, is a pin for as long as the foot that stands is pressed on it.
+/// Ground that only pushes, with friction enough, is a pin for as long as it presses the foot that stands, and the other one is in the air.
 #[test]
 fn pinned_toe_is_a_foot_that_neither_slips_nor_leaves_the_ground() {
-    let (_, pinned) = fall("pinned.yaml", 0.2, "");
-    let (summary, standing) = fall("robot.yaml", 0.2, "ground: {friction: 10, planar: true}\n");
+    let (_, pinned) = fall("pinned.yaml", 0.15, "");
+    let (summary, standing) = fall("robot.yaml", 0.15, "ground: {friction: 10, planar: true}\n");
     assert!(summary.events.is_empty(), "{:?}", summary.events);
     assert_eq!(pinned.len(), standing.len());
     for (a, b) in pinned.iter().zip(&standing) {
