@@ -225,9 +225,8 @@ impl<W: Write> Recorder for McapRecorder<W> {
         let Some(channel) = self.channels.impacts else { return Ok(()) };
         let message = proto::Impact::new(&self.info, impact).encode_to_vec();
         let time = Stamp::new(impact.t).total_nanos();
-        self.put(channel, time, &message).map_err(|e| error(&self.name, e))?;
-        self.last = Some(impact.t);
-        Ok(())
+        // Its time is found by halving steps, and may be past that of the next sample by rounding: `last` is not for it.
+        self.put(channel, time, &message).map_err(|e| error(&self.name, e))
     }
 
     fn finish(&mut self) -> Result<(), Error> {
