@@ -287,6 +287,37 @@ def test_constraints_that_do_not_fit_the_robot_are_refused(arm: gyroflex.Robot, 
             call()
 
 
+def test_what_a_file_holds_is_what_its_names_say(arm_file: Path) -> None:
+    path = arm_file.parent / "held.yaml"
+    path.write_text(
+        arm_file.read_text()
+        + """
+constraints:
+  wall: {link: tool, xyz: [0.01, 0.02, 0.03], rpy: [0.1, 0.2, 0.3], to: {link: base, xyz: [0.3, 0.1, 0.5]}, directions: [x, rz], stabilisation: 5}
+  itself: {link: tool, to: {link: upper}, directions: [y]}
+couplings:
+  belt: {joint: elbow, follows: shoulder, ratio: -2.0, offset: 0.1}
+"""
+    )
+    for floating in (False, True):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", gyroflex.RobotWarning)
+            robot = gyroflex.Robot.load(path, floating=floating)
+        written = {
+            "wall": Constraint.frame(
+                "tool", xyz=(0.01, 0.02, 0.03), rpy=(0.1, 0.2, 0.3), to="base", at_xyz=(0.3, 0.1, 0.5), directions=["x", "rz"]
+            ),
+            "itself": Constraint.frame("tool", to="upper", directions=["y"]),
+            "belt": Constraint.joints("elbow", "shoulder", ratio=-2.0, offset=0.1),
+        }
+        assert robot.constraints.keys() == written.keys()
+        s = random_state(robot, np.random.default_rng(18))
+        for name, constraint in robot.constraints.items():
+            of_file, of_names = (robot.constraint_motion(s["q"], s["qd"], constraints=[c]) for c in (constraint, written[name]))
+            for a, b in zip(of_file, of_names, strict=True):
+                np.testing.assert_allclose(a, b, atol=1e-12)
+
+
 def test_calls_say_what_is_missing(arm: gyroflex.Robot) -> None:
     s, constraints = random_state(arm, np.random.default_rng(17)), held(arm)
     with pytest.raises(gyroflex.ArgumentError, match="`tau`"):

@@ -111,6 +111,19 @@ def test_eval_gives_the_same_numbers_of_a_robot_that_is_held(binary: Path) -> No
             np.testing.assert_allclose(told["moment"] + told["force"], torques.wrenches[k], rtol=1e-9, atol=1e-9)
 
 
+def test_eval_holds_what_the_file_of_the_robot_holds(binary: Path) -> None:
+    path = PROJECT / "robots" / "four_bar" / "robot.yaml"
+    robot, rng = load(path), np.random.default_rng(13)
+    assert list(robot.constraints) == ["loop"]
+    for _ in range(STATES):
+        s, tau = random_state(robot, rng), rng.normal(size=robot.nv)
+        line = {key: value.tolist() for key, value in (s | {"tau": tau}).items()}
+        motion = robot.constrained_forward_dynamics(**s, tau=tau, constraints=list(robot.constraints.values()))
+        (answer,) = evaluate(binary, path, [line])
+        assert_same_bits(motion.qdd, answer["qdd"])
+        assert_same_bits(motion.multipliers, answer["held"][0]["multipliers"])
+
+
 def test_there_are_robots_to_compare() -> None:
     assert len(ROBOTS) >= 5
 

@@ -490,6 +490,10 @@ class Robot:
     ) -> dict[str, Any]:
         """The dynamics that a link feels: Jacobian, inertia, consistent inverse, velocity and gravity forces, singular values."""
 
+    @property
+    def constraints(self) -> dict[str, Constraint]:
+        """The constraints and couplings of the robot's file by name: what always holds it in simulations."""
+
     def constrained_forward_dynamics(
         self,
         q: ArrayLike,

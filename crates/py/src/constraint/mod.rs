@@ -18,12 +18,23 @@ use gyroflex::dynamics::{
 };
 use gyroflex::spatial::Force;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use result::Forces;
 
 type Given<'py> = Vec<Bound<'py, PyConstraint>>;
 
 #[pymethods]
 impl PyRobot {
+    /// The constraints and couplings of the robot's file by name: what always holds it in simulations. Calls take what holds it as an argument.
+    #[getter]
+    fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let named = PyDict::new(py);
+        for part in &self.robot.held {
+            named.set_item(&part.name, PyConstraint::of_part(&self.robot, part).into_pyobject(py)?)?;
+        }
+        Ok(named)
+    }
+
     /// Accelerations of links and motors with something held, and the forces that hold it.
     ///
     /// Parameters
