@@ -42,6 +42,11 @@ impl Layout {
         self.joints.len()
     }
 
+    /// Entries of a floating root, which lead.
+    pub(super) fn root(&self) -> usize {
+        if self.floating { ROOT } else { 0 }
+    }
+
     /// Whether any joint has a motor coordinate of its own.
     pub(super) fn has_elastic(&self) -> bool {
         self.has_elastic
