@@ -192,6 +192,19 @@ impl Robot {
         Some((Place { link, station }, before))
     }
 
+    /// Multiplies mass and inertia of a link, not those of the load on it, by a factor. Whether it has a mass.
+    pub fn scale_mass(&mut self, body: usize, factor: f64) -> bool {
+        let load = self.payload.map(|load| (load.link, load.inertia));
+        self.set_payload(None);
+        let own = self.bodies[body].inertia;
+        self.bodies[body].inertia = own.map(|x| x * factor);
+        if let Some(link) = self.flexible.of_body(Some(body)) {
+            self.flexible.links[link].scale_mass(factor);
+        }
+        self.set_payload(load);
+        own.mass > 0.0
+    }
+
     /// Number of single-degree-of-freedom joints: all but a floating root.
     pub fn is_floating(&self) -> bool {
         self.joints.first().is_some_and(|j| j.urdf_type == "floating")
