@@ -32,7 +32,7 @@ impl Equilibrium {
 
     /// Writes the reflected motor positions `theta` at which the transmissions hold the links at `q` against gravity and `ext`,
     /// and the motor torques `tau` that hold the motors there; both have `nv` entries. Without an elastic transmission
-    /// `theta` is the joint's own position. On a floating root `tau` is the wrench that would hold it.
+    /// `theta` is the joint's own position. Modes of links that bend are held where they are: `tau` has the forces on them. On a floating root `tau` is the wrench that would hold it.
     ///
     /// # Errors
     /// A slice that does not fit the model.
@@ -94,6 +94,8 @@ impl Equilibrium {
     /// Where the motors are, and what holds them there, while the transmissions exert `tau_j`.
     fn motors(&self, dynamics: &Dynamics, q: &[f64], theta: &mut [f64], tau: &mut [f64]) {
         let model = dynamics.model();
+        // A mode has no motor.
+        theta[model.nv()..].copy_from_slice(&q[model.nq()..]);
         for body in model.bodies() {
             let (i, k) = (body.q_index(), body.v_index());
             if body.joint.nv() != 1 {

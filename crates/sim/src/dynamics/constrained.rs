@@ -64,6 +64,7 @@ impl Dynamics {
         out: Forward<f64>,
         forces: Constrained<f64>,
     ) -> Result<Solved<f64>, Error> {
+        self.model.refuse_bending("what holds a robot beside its joints")?;
         let model = self.model.view();
         self.held.fit(&model, constraints);
         let scratch = self.held.lend(&mut self.aba, &mut self.joint_space);
@@ -139,6 +140,7 @@ impl Dynamics {
         out: Impact<f64>,
         forces: Constrained<f64>,
     ) -> Result<Solved<f64>, Error> {
+        self.model.refuse_bending("what holds a robot beside its joints")?;
         let model = self.model.view();
         self.held.fit(&model, constraints);
         let scratch = self.held.lend(&mut self.aba, &mut self.joint_space);
@@ -156,6 +158,7 @@ impl Dynamics {
         constraints: &[Constraint<f64>],
         out: ConstraintMotion<f64>,
     ) -> Result<(), Error> {
+        self.model.refuse_bending("what holds a robot beside its joints")?;
         let model = self.model.view();
         self.held.fit(&model, constraints);
         Ok(dynamics::constraint_motion(&model, q, qd, constraints, &mut self.held.supports, out)?)

@@ -24,6 +24,14 @@ pub struct Query {
     pub tau: Option<Vec<f64>>,
     /// Generalised forces on the link side of the joints, like `tau` [N m or N].
     pub tau_ext: Option<Vec<f64>>,
+    /// Modal coordinates of links that bend, one entry per mode [m, in torsion rad]; `None` is zero.
+    pub eta: Option<Vec<f64>>,
+    /// Their rates; `None` is zero.
+    pub etad: Option<Vec<f64>>,
+    /// Their accelerations, for inverse dynamics; `None` leaves the modes free: their accelerations are computed.
+    pub etadd: Option<Vec<f64>>,
+    /// Generalised forces on the modes, for forward dynamics [N, in torsion N m]; `None` is zero.
+    pub tau_eta: Option<Vec<f64>>,
     /// Loads on links.
     pub wrenches: Vec<Wrench>,
     /// Acceleration of gravity in world axes [m/s²]; `None` is the robot's own.
@@ -73,8 +81,24 @@ pub enum WrenchAxes {
     Link,
 }
 
-const KEYS: [&str; 12] =
-    ["q", "qd", "qdd", "theta", "thetad", "thetadd", "tau", "tau_ext", "wrenches", "gravity", "held", "distribution"];
+const KEYS: [&str; 16] = [
+    "q",
+    "qd",
+    "qdd",
+    "theta",
+    "thetad",
+    "thetadd",
+    "tau",
+    "tau_ext",
+    "eta",
+    "etad",
+    "etadd",
+    "tau_eta",
+    "wrenches",
+    "gravity",
+    "held",
+    "distribution",
+];
 const DISTRIBUTION_KEYS: [&str; 4] = ["torques", "multipliers", "wanted", "passive"];
 const WRENCH_KEYS: [&str; 5] = ["link", "force", "torque", "frame", "point"];
 
@@ -119,6 +143,10 @@ impl Query {
             "thetadd" => &mut self.thetadd,
             "tau" => &mut self.tau,
             "tau_ext" => &mut self.tau_ext,
+            "eta" => &mut self.eta,
+            "etad" => &mut self.etad,
+            "etadd" => &mut self.etadd,
+            "tau_eta" => &mut self.tau_eta,
             _ => return None,
         })
     }

@@ -80,6 +80,9 @@ fn run_info(state: &State) -> RunInfo {
         prismatic: state.joints.iter().map(|j| j.prismatic).collect(),
         floating: state.base.is_some(),
         held: state.footing.is_some(),
+        modes: state.modes.iter().map(|m| m.name.clone()).collect(),
+        turning: state.modes.iter().map(|m| m.turning).collect(),
+        tips: state.tips.iter().map(|t| t.link.clone()).collect(),
         contacts: state.footing.as_ref().map_or_else(Vec::new, |footing| footing.names()),
         ..RunInfo::default()
     }

@@ -1,7 +1,8 @@
 //! One instant of a run, and the check every recorder makes before it takes one.
 
 use super::RunInfo;
-use super::columns::{PER_JOINT, WHOLE};
+use super::columns::{PER_JOINT, PER_MODE, WHOLE};
+use crate::bending::Tip;
 use crate::error::{Error, ErrorKind};
 use gyroflex::spatial::Transform;
 
@@ -56,6 +57,14 @@ pub struct Sample {
     pub frames: Vec<Transform<f64>>,
     /// What holds the robot; only where something beside its joints does.
     pub footing: Option<Footing>,
+    /// Modal coordinates of links that bend, in the order of [`RunInfo::modes`] [m, in torsion rad].
+    pub eta: Vec<f64>,
+    /// Their rates.
+    pub etad: Vec<f64>,
+    /// Their accelerations.
+    pub etadd: Vec<f64>,
+    /// Deflections of the tips of links that bend, in the order of [`RunInfo::tips`].
+    pub tips: Vec<Tip>,
 }
 
 /// What holds a robot beside its joints.
@@ -150,6 +159,21 @@ impl Sample {
             for (joint, &value) in info.joints.iter().zip(values) {
                 self.finite(format_args!("{} of joint `{joint}`", quantity.key), &[value])?;
             }
+        }
+        for quantity in PER_MODE {
+            let values = (quantity.get)(self);
+            if values.len() != info.modes.len() {
+                return Err(shape(quantity.key, format!("{} values for {} modes", values.len(), info.modes.len())));
+            }
+            for (mode, &value) in info.modes.iter().zip(values) {
+                self.finite(format_args!("{} of mode `{mode}`", quantity.key), &[value])?;
+            }
+        }
+        if self.tips.len() != info.tips.len() {
+            return Err(shape("tip", format!("{} deflections for {} links", self.tips.len(), info.tips.len())));
+        }
+        for (link, tip) in info.tips.iter().zip(&self.tips) {
+            self.finite(format_args!("deflection of link `{link}`"), &[tip.displacement, tip.rotation].concat())?;
         }
         for quantity in WHOLE {
             self.finite(format_args!("{}", quantity.key), &[(quantity.get)(self)])?;

@@ -93,6 +93,10 @@ impl Simulation {
         let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
         let mut loads = Loads::new(&scenario.wrenches, &robot, &file.keys)?;
         let motors = control.start(&references)?;
+        if !robot.held.is_empty() || scenario.ground.is_some() {
+            let remedy = "take `ground` out of the scenario and constraints and couplings off the robot, or the link out of `flexible_links`";
+            robot.refuse_bending("what holds a robot beside its joints", remedy)?;
+        }
         let mut contacts = Contacts::new(&robot, scenario.ground, &dynamics, &file.keys)?;
         let mut initial =
             start::initial_state(file, &joints, &references, motors, &mut dynamics, &mut loads, &mut contacts)?;

@@ -8,7 +8,6 @@ use crate::error::{Error, Warning};
 use crate::ode::Halt;
 use crate::record::Recorder;
 use crate::scenario::Integrator;
-use gyroflex::integrate::integrate;
 use std::ops::ControlFlow;
 use std::time::Instant as WallClock;
 
@@ -257,7 +256,7 @@ impl Simulation {
         for (half, v) in self.half_step.iter_mut().zip(qd) {
             *half = 0.5 * h * v;
         }
-        integrate(&self.dynamics.model(), q, &self.half_step, &mut self.halfway)?;
+        self.dynamics.integrate(q, &self.half_step, &mut self.halfway)?;
         self.loads.update(&self.dynamics, &self.halfway)?;
         Ok(())
     }
