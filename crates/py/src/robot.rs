@@ -77,7 +77,7 @@ impl PyRobot {
 
     /// Names of the joints of one degree of freedom, in coordinate order: all but a floating root.
     #[getter]
-    fn joint_names(&self) -> Vec<&str> {
+    pub(crate) fn joint_names(&self) -> Vec<&str> {
         self.joints().map(|j| j.name.as_str()).collect()
     }
 

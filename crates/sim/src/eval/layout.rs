@@ -46,6 +46,11 @@ impl Layout {
         self.joints.len()
     }
 
+    /// Entries of a floating root, which lead.
+    pub(super) fn root(&self) -> usize {
+        if self.floating { ROOT } else { 0 }
+    }
+
     /// The joint or the mode behind entry `k` of a vector over all coordinates, for an error message.
     pub(super) fn owner(&self, k: usize) -> String {
         match self.joints.get(k) {

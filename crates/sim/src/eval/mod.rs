@@ -2,8 +2,10 @@
 //!
 //! Arrays run over all joints in coordinate order. A line with `tau` asks for forward dynamics, one with `qdd` for inverse
 //! dynamics; with neither, only what the [`Options`] ask for is computed. Motor positions and torques are reflected to the
-//! link side unless [`Options::motor_side`] is set. Modes of links that bend have arrays of their own: `eta`, `etad`, `etadd`, `tau_eta`.
+//! link side unless [`Options::motor_side`] is set. What holds the robot beside its joints is in force as [`Query::held`] says. Modes of
+//! links that bend have arrays of their own: `eta`, `etad`, `etadd`, `tau_eta`.
 
+mod held;
 mod input;
 mod json;
 mod layout;
@@ -11,9 +13,9 @@ mod output;
 mod wrench;
 
 pub use crate::analyze::{Significance, significance};
-pub use input::{Query, Wrench, WrenchAxes};
+pub use input::{Distribution, Query, Wrench, WrenchAxes};
 pub use layout::unit_quaternion;
-pub use output::{Answer, EnergyAnswer, VelocityMatrices};
+pub use output::{Answer, EnergyAnswer, HeldAnswer, VelocityMatrices};
 
 use crate::Dynamics;
 use crate::error::Error;
@@ -21,6 +23,7 @@ use crate::robot::Robot;
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex::model::Fidelity;
 use gyroflex::spatial::{Force, Transform, Vec3};
+use held::{Held, Sharing};
 use layout::{Arrays, Layout};
 
 /// What to compute, and how the numbers are given.
@@ -134,6 +137,15 @@ impl Evaluator {
         wrench::gather(&self.robot, &query.wrenches, &self.poses, &eta, &mut self.wrenches, modal)?;
         let ext = External { tau: &tau_ext, wrenches: &self.wrenches };
 
+        let mut held = Held::of(&self.robot, query.held.as_deref(), &self.poses)?;
+        held::refuse_without_effect(query, matches!(task, Task::Inverse(_)), &held)?;
+        if !held.is_empty() {
+            self.robot.refuse_bending(
+                "what holds a robot beside its joints",
+                "say `\"held\": []`, or take the link out of `flexible_links`",
+            )?;
+        }
+
         let (nv, bends) = (joints + eta.len(), !eta.is_empty());
         let zeros = || vec![0.0; nv];
         let mut answer = Answer::default();
@@ -142,7 +154,17 @@ impl Evaluator {
                 let tau = with(arrays.torques("tau", tau)?, &arrays.modes("tau_eta", query.tau_eta.as_deref())?);
                 let (mut qdd, mut thetadd, mut tau_j) = (zeros(), zeros(), zeros());
                 let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
-                self.dynamics.forward(state, &tau, ext, out)?;
+                if held.is_empty() {
+                    self.dynamics.forward(state, &tau, ext, out)?;
+                } else {
+                    let Forward { qdd, thetadd, tau_j } = out;
+                    let solved = held.solve(|constraints, regularisation, forces| {
+                        let out = Forward { qdd: &mut *qdd, thetadd: &mut *thetadd, tau_j: &mut *tau_j };
+                        self.dynamics.constrained_forward(state, &tau, ext, constraints, regularisation, out, forces)
+                    })?;
+                    held.tell(&solved, &mut answer);
+                    answer.contradiction = Some(solved.contradiction);
+                }
                 answer.etadd = bends.then(|| qdd.split_off(joints));
                 thetadd.truncate(joints);
                 tau_j.truncate(joints);
@@ -157,9 +179,30 @@ impl Evaluator {
                 let (mut tau_j, mut tau) = (zeros(), zeros());
                 let out = Inverse { tau_j: &mut tau_j, tau: &mut tau };
                 let accel = Acceleration { qdd: &qdd, thetadd: &thetadd };
-                match bends && query.etadd.is_none() {
-                    true => self.dynamics.hybrid(state, accel, ext, out, &mut etadd)?,
-                    false => self.dynamics.inverse(state, accel, ext, out)?,
+                if held.is_empty() {
+                    match bends && query.etadd.is_none() {
+                        true => self.dynamics.hybrid(state, accel, ext, out, &mut etadd)?,
+                        false => self.dynamics.inverse(state, accel, ext, out)?,
+                    }
+                } else {
+                    let sharing = Sharing::of(query.distribution.as_ref(), &self.layout, held.rows())?;
+                    let solved = held.solve_once(|constraints, regularisation, forces| {
+                        let distribution = sharing.view();
+                        let dynamics = &mut self.dynamics;
+                        dynamics.constrained_inverse(
+                            state,
+                            accel,
+                            ext,
+                            constraints,
+                            distribution,
+                            regularisation,
+                            out,
+                            forces,
+                        )
+                    })?;
+                    held.tell(&solved, &mut answer);
+                    let unborne = sharing.passive.iter().map(|k| tau_j[*k].abs());
+                    answer.unborne = unborne.reduce(f64::max);
                 }
                 let tau_eta = tau.split_off(joints);
                 tau_j.truncate(joints);
@@ -233,6 +276,8 @@ impl Evaluator {
             ("etadd", query.etadd.is_some()),
             ("tau_ext", query.tau_ext.is_some()),
             ("wrenches", !query.wrenches.is_empty()),
+            ("held", query.held.is_some()),
+            ("distribution", query.distribution.is_some()),
         ];
         match without_effect.iter().find(|(_, given)| *given) {
             Some((key, _)) => {

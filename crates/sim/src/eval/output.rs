@@ -23,6 +23,19 @@ pub struct Answer {
     /// Torque the motor must exert [N m or N].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tau: Option<Vec<f64>>,
+    /// Forces of what is held, where anything is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held: Option<Vec<HeldAnswer>>,
+    /// How many held directions depend on others, or cannot move at all: how those share the load is a choice.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dependent: Option<usize>,
+    /// The largest acceleration that those ask for and do not get: not small where what is held contradicts itself. Forward dynamics only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contradiction: Option<f64>,
+    /// The largest load at what nothing drives that nothing held bears either [N m or N]: not small where the motion is impossible. Inverse dynamics
+    /// with passive velocities only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unborne: Option<f64>,
     /// Accelerations of the modes of links that bend.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub etadd: Option<Vec<f64>>,
@@ -56,6 +69,22 @@ pub struct Answer {
     /// Significance of the gyroscopic coupling.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub significance: Option<Significance>,
+}
+
+/// Forces of a constraint, a coupling or a contact.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HeldAnswer {
+    /// Its name.
+    pub name: String,
+    /// Force on its link in world axes [N]; absent for couplings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<[f64; 3]>,
+    /// Moment on its link about the origin of the held frame, in world axes [N m]; absent for couplings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moment: Option<[f64; 3]>,
+    /// Forces along its directions, out of rx, ry, rz, x, y, z in this order, in the axes of what it is held to; for a coupling that along
+    /// the joint that follows [N or N m].
+    pub multipliers: Vec<f64>,
 }
 
 /// What the matrices become in motion: blocks of the Coriolis matrix in Christoffel form, and rates.
@@ -144,6 +173,10 @@ impl Answer {
             if let Some(k) = vector.as_ref().and_then(|v| v.iter().position(|x| !x.is_finite())) {
                 return Err(not_finite(&layout.owner(k), key));
             }
+        }
+        let mut told = self.held.iter().flatten();
+        if let Some(wrong) = told.find(|held| held.multipliers.iter().any(|x| !x.is_finite())) {
+            return Err(not_finite(&format!("`{}`", wrong.name), "held"));
         }
         let moving = self.velocity_matrices.as_ref();
         let matrices = [

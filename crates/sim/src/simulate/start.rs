@@ -1,5 +1,6 @@
 //! The state a scenario starts from.
 
+use crate::contact::Contacts;
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
 use crate::equilibrium::Equilibrium;
@@ -41,8 +42,8 @@ impl StateVec {
     }
 }
 
-/// The initial state: what the scenario gives, and for the rest the reference at time 0 and static equilibrium; or, where the controller
-/// knows how the motors move, that.
+/// The initial state: what the scenario gives, and for the rest the reference at time 0 and static equilibrium, with the forces of what holds the
+/// robot if there is one with them; or, where the controller knows how the motors move, that.
 pub(super) fn initial_state(
     file: &ScenarioFile,
     joints: &Coordinates,
@@ -50,6 +51,7 @@ pub(super) fn initial_state(
     motors: Option<Motors<f64>>,
     dynamics: &mut Dynamics,
     loads: &mut Loads,
+    contacts: &mut Contacts,
 ) -> Result<StateVec, Error> {
     let (initial, keys) = (&file.scenario.initial, &file.keys);
     let mut state = StateVec::zeros(dynamics.nq(), dynamics.nv());
@@ -88,6 +90,7 @@ pub(super) fn initial_state(
     let mut tau = vec![0.0; dynamics.nv()];
     let mut equilibrium = Equilibrium::new(dynamics.nv());
     equilibrium.solve(dynamics, &state.q, loads.external(), &mut state.theta, &mut tau)?;
+    contacts.equilibrium(dynamics, &mut state, loads, &mut equilibrium)?;
     for (i, joint) in joints.joints.iter().enumerate() {
         let elastic = dynamics.model().bodies()[joint.body].is_elastic();
         if let Some(motors) = motors.filter(|_| elastic) {
