@@ -15,7 +15,10 @@ fn info_lists_modes_and_counts_them() {
     let info: Value = serde_json::from_str(&gyroflex(&here, &["info", &arm(), "--json"]).out).expect("JSON");
     assert_eq!((info["nq"].as_u64(), info["nv"].as_u64()), (Some(6), Some(6)));
     let modes = &info["flexible_links"][0]["modes"];
-    assert_eq!((modes[1]["name"].as_str(), modes[1]["boundary"].as_str()), (Some("upper.bending_y2"), Some("clamped_free")));
+    assert_eq!(
+        (modes[1]["name"].as_str(), modes[1]["boundary"].as_str()),
+        (Some("upper.bending_y2"), Some("clamped_free"))
+    );
     let text = gyroflex(&here, &["info", &arm()]).out;
     assert!(text.contains("Links that bend") && text.contains("lower.bending_y1"), "{text}");
 }
@@ -48,7 +51,9 @@ fn modes_are_named_and_simulations_and_inverses_run() {
     let ended = gyroflex(&here, &["simulate", "reach.yaml", "--csv", "run.csv", "--output", "run.mcap"]);
     assert_eq!(ended.code, Some(0), "{}", ended.err);
     let header = std::fs::read_to_string(here.join("run.csv")).expect("it is written");
-    assert!(header.lines().next().is_some_and(|l| l.contains("eta.lower.bending_y2 [m]") && l.contains("tip.upper.y [m]")));
+    assert!(
+        header.lines().next().is_some_and(|l| l.contains("eta.lower.bending_y2 [m]") && l.contains("tip.upper.y [m]"))
+    );
     let ended = gyroflex(&here, &["inverse", "reach.yaml", "--output", "inverse.mcap"]);
     assert_eq!(ended.code, Some(0), "{}", ended.err);
     assert!(ended.out.contains("internal dynamics: undamped, of links that bend"), "{}", ended.out);
