@@ -7,7 +7,7 @@ use gyroflex::dynamics::{
     FlexibleStation, Forward, Inverse, State,
 };
 use gyroflex::integrate::{self, StateMut};
-use gyroflex::model::{FlexibleModel, JointKind};
+use gyroflex::model::{FlexibleModel, JointKind, Model, SizeError};
 use gyroflex::spatial::{Motion, Transform};
 use gyroflex::{Jet, Scalar};
 use nalgebra::{DMatrix, DVector};
@@ -46,6 +46,9 @@ impl<T: Scalar> Storage<T> {
         }
     }
 }
+
+/// A function of the core over positions and velocities of joints.
+type OverJoints = fn(&Model<f64>, &[f64], &[f64], &mut [f64]) -> Result<(), SizeError>;
 
 /// What a robot needs once its links bend.
 #[derive(Clone, Debug)]
@@ -452,7 +455,7 @@ impl Dynamics {
         q: &[f64],
         v: &[f64],
         out: &mut [f64],
-        joints: fn(&gyroflex::model::Model<f64>, &[f64], &[f64], &mut [f64]) -> Result<(), gyroflex::model::SizeError>,
+        joints: OverJoints,
         mode: fn(f64, f64) -> f64,
     ) -> Result<(), Error> {
         let n = self.modes();
