@@ -2,6 +2,8 @@
 
 mod bending;
 mod bending_matrices;
+mod bending_statics;
+mod bending_steps;
 mod constrained;
 mod derivatives;
 mod matrices;

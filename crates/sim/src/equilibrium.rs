@@ -32,7 +32,8 @@ impl Equilibrium {
 
     /// Writes the reflected motor positions `theta` at which the transmissions hold the links at `q` against gravity and `ext`,
     /// and the motor torques `tau` that hold the motors there; both have `nv` entries. Without an elastic transmission
-    /// `theta` is the joint's own position. Modes of links that bend are held where they are: `tau` has the forces on them. On a floating root `tau` is the wrench that would hold it.
+    /// `theta` is the joint's own position. Modes of links that bend are held where they are: `tau` has the forces on them. On a
+    /// floating root `tau` is the wrench that would hold it.
     ///
     /// # Errors
     /// A slice that does not fit the model.
