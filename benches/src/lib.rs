@@ -1,5 +1,6 @@
 //! Robots, states and calls shared by the benches and the instruction counts.
 
+mod beams;
 mod generated;
 mod humanoid;
 mod lanes;
@@ -8,6 +9,7 @@ pub mod peers;
 mod robots;
 mod workload;
 
+pub use beams::{Beams, FlexibleAlgorithm};
 pub use generated::{Shape, generated};
 pub use humanoid::{Standing, humanoid};
 pub use lanes::Lane;

@@ -182,7 +182,7 @@ pub(crate) struct Inputs<T> {
 }
 
 impl<T: Real> Inputs<T> {
-    fn new(s: &Point) -> Self {
+    pub(crate) fn new(s: &Point) -> Self {
         Self {
             q: cast(&s.q),
             qd: cast(&s.qd),
@@ -197,7 +197,7 @@ impl<T: Real> Inputs<T> {
     }
 
     /// NaN wherever there was a number.
-    fn spoilt(&self) -> Self {
+    pub(crate) fn spoilt(&self) -> Self {
         let nans = |x: &[T]| vec![nan(); x.len()];
         Self {
             q: nans(&self.q),

@@ -9,7 +9,7 @@ use gyroflex::control::{FeedbackLinearization, LinearizationScratch, Motors, Pd,
 use gyroflex::dynamics::*;
 use gyroflex::integrate::*;
 use gyroflex::model::*;
-use gyroflex::spatial::{Motion, Transform};
+use gyroflex::spatial::{Mat3, Motion, SpatialInertia, Transform, Vec3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -106,6 +106,89 @@ fn no_algorithm_allocates() {
     });
     assert_eq!(count, 0);
     assert!(q.iter().chain(&qd).all(|x: &f64| x.is_finite()));
+}
+
+#[test]
+fn no_algorithm_of_flexible_links_allocates() {
+    // A beam along x that bends along y, and a joint with an elastic transmission at its end.
+    let mut elbow = link(Some(0), [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.1, 0.0, 0.0]);
+    elbow.drive = Some(drive(Some(0), [0.0, 0.0, 1.0], 80.0, elastic(800.0, 1.0)));
+    let specs = [link(None, [0.0, 0.0, 1.0], [0.0; 3], [0.5, 0.0, 0.0]), elbow];
+    let robot = Lowered::new(&specs, [0.0, -9.81, 0.0], Fidelity::Complete);
+    let (x, y) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0));
+    let mut links = [FlexibleLink::new(0, 1, 1, true)];
+    let mut modes = [gyroflex::model::Mode { momentum: y.scale(0.3), moments: Mat3::outer(x, y.scale(0.25)) }];
+    let mut pairs = [ModePair {
+        moments: Mat3::outer(y, y.scale(0.2)),
+        stiffness: 7.0,
+        damping: 0.1,
+        shortening: x.scale(-0.3),
+        shortening_moments: Mat3::outer(x, x.scale(-0.25)),
+    }];
+    let mut stations = [Station::new(x, SpatialInertia::zero())];
+    let mut shapes = [StationShape { displacement: y, rotation: Vec3::new(0.0, 0.0, 2.0) }];
+    let mut shortenings = [x.scale(-4.0 / 3.0)];
+    let mut seats = [Seat::default(), Seat { parent: Some(0), rotor: Some(0), link: None }];
+    let spec = RobotSpec { bodies: &specs, spring_tables: &[], gravity: robot.gravity };
+    let mut bodies = [FlexibleBody::new(); 2];
+    let mut storage = ([FlexibleStation::new()], [FlexibleMode::new()], [Motion::zero()], [0.0]);
+    let (q, qd, tau) = ([0.2, -0.4, 0.05], [0.5; 3], [0.3; 3]);
+    let [mut a, mut b, mut c] = [[0.0; 3]; 3];
+    let ([mut mass, mut coupling], mut etadd) = ([[0.0; 9]; 2], [0.0]);
+    let (mut poses, mut at_stations) = ([Transform::identity(); 2], [Transform::identity()]);
+
+    let count = allocations(|| {
+        let model = FlexibleRecords {
+            links: &mut links,
+            modes: &mut modes,
+            pairs: &mut pairs,
+            stations: &mut stations,
+            shapes: &mut shapes,
+            shortenings: &mut shortenings,
+            seats: &mut seats,
+        }
+        .lower(&spec, robot.model())
+        .unwrap();
+        let (state, ext) = (State { q: &q, qd: &qd, theta: &tau, thetad: &tau }, External::none());
+        let accel = Acceleration { qdd: &tau, thetadd: &tau };
+        for which in 0..7 {
+            let scratch = FlexibleScratch {
+                bodies: &mut bodies,
+                stations: &mut storage.0,
+                modes: &mut storage.1,
+                shapes: &mut storage.2,
+                matrix: &mut storage.3,
+            };
+            match which {
+                0 => flexible_rnea(&model, state, accel, ext, scratch, Inverse { tau_j: &mut a, tau: &mut b }).unwrap(),
+                1 => {
+                    let out = Inverse { tau_j: &mut a, tau: &mut b };
+                    flexible_hybrid(&model, state, accel, ext, scratch, out, &mut etadd).unwrap();
+                }
+                2 => {
+                    let out = FlexibleMatrices { mass: &mut mass, coupling: &mut coupling };
+                    flexible_mass_matrix(&model, &q, scratch, out).unwrap();
+                }
+                3 => {
+                    flexible_energy(&model, state, scratch).unwrap();
+                }
+                4 => {
+                    flexible_power(&model, state, &tau, ext, scratch).unwrap();
+                }
+                5 => {
+                    let out = FlexiblePlacements { links: &mut poses, stations: &mut at_stations };
+                    flexible_placements(&model, &q, scratch, out).unwrap();
+                }
+                _ => {
+                    let out = Forward { qdd: &mut a, thetadd: &mut b, tau_j: &mut c };
+                    flexible_aba(&model, state, &tau, ext, scratch, out).unwrap();
+                }
+            }
+        }
+    });
+    assert_eq!(count, 0);
+    let all = a.iter().chain(&b).chain(&c).chain(&mass).chain(&etadd);
+    assert!(all.copied().all(|x: f64| x.is_finite() && x != 0.0));
 }
 
 #[test]

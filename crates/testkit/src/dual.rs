@@ -5,83 +5,86 @@ use gyroflex::Scalar;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// `value + slope ε` with `ε² = 0`: what a function gives for it has the function's derivative along `slope` beside its value.
+/// Of dual numbers, it has second derivatives, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dual {
+pub struct Dual<T = f64> {
     /// The number.
-    pub value: f64,
+    pub value: T,
     /// Its derivative.
-    pub slope: f64,
+    pub slope: T,
 }
 
-impl Dual {
+impl<T> Dual<T> {
     /// A number and its derivative.
-    pub const fn new(value: f64, slope: f64) -> Self {
+    pub const fn new(value: T, slope: T) -> Self {
         Self { value, slope }
     }
+}
 
+impl<T: Scalar> Dual<T> {
     /// A function of one number, given its value and derivative there.
-    fn through(self, value: f64, derivative: f64) -> Self {
+    fn through(self, value: T, derivative: T) -> Self {
         Self { value, slope: derivative * self.slope }
     }
 }
 
-impl Add for Dual {
+impl<T: Scalar> Add for Dual<T> {
     type Output = Self;
     fn add(self, b: Self) -> Self {
         Self::new(self.value + b.value, self.slope + b.slope)
     }
 }
-impl Sub for Dual {
+impl<T: Scalar> Sub for Dual<T> {
     type Output = Self;
     fn sub(self, b: Self) -> Self {
         Self::new(self.value - b.value, self.slope - b.slope)
     }
 }
-impl Mul for Dual {
+impl<T: Scalar> Mul for Dual<T> {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
         Self::new(self.value * b.value, self.slope * b.value + self.value * b.slope)
     }
 }
-impl Div for Dual {
+impl<T: Scalar> Div for Dual<T> {
     type Output = Self;
     fn div(self, b: Self) -> Self {
         let value = self.value / b.value;
         Self::new(value, (self.slope - value * b.slope) / b.value)
     }
 }
-impl Neg for Dual {
+impl<T: Scalar> Neg for Dual<T> {
     type Output = Self;
     fn neg(self) -> Self {
         Self::new(-self.value, -self.slope)
     }
 }
-impl AddAssign for Dual {
+impl<T: Scalar> AddAssign for Dual<T> {
     fn add_assign(&mut self, b: Self) {
         *self = *self + b;
     }
 }
-impl SubAssign for Dual {
+impl<T: Scalar> SubAssign for Dual<T> {
     fn sub_assign(&mut self, b: Self) {
         *self = *self - b;
     }
 }
 
-impl Scalar for Dual {
+impl<T: Scalar<Param = f64>> Scalar for Dual<T> {
     type Param = f64;
 
     fn from_param(x: f64) -> Self {
-        Self::new(x, 0.0)
+        Self::from_f64(x)
     }
     fn from_f64(x: f64) -> Self {
-        Self::new(x, 0.0)
+        Self::new(T::from_f64(x), T::zero())
     }
     fn is_finite(self) -> bool {
         self.value.is_finite() && self.slope.is_finite()
     }
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        self.through(root, 0.5 / root)
+        self.through(root, T::from_f64(0.5) / root)
     }
     fn sin_cos(self) -> (Self, Self) {
         let (s, c) = self.value.sin_cos();
@@ -93,14 +96,15 @@ impl Scalar for Dual {
     }
     fn tanh(self) -> Self {
         let t = self.value.tanh();
-        self.through(t, 1.0 - t * t)
+        self.through(t, T::one() - t * t)
     }
     fn exp(self) -> Self {
         let e = self.value.exp();
         self.through(e, e)
     }
     fn select_less(self, threshold: Self, less: Self, otherwise: Self) -> Self {
-        if self.value < threshold.value { less } else { otherwise }
+        let select = |less: T, otherwise: T| self.value.select_less(threshold.value, less, otherwise);
+        Self::new(select(less.value, otherwise.value), select(less.slope, otherwise.slope))
     }
 }
 

@@ -61,7 +61,8 @@ pub enum Defect {
     FlexibleRecords(&'static str),
     /// The body hangs on a link that bends, or its rotor sits on one, but its seat names none of that link's stations.
     NoStation,
-    /// A rigidly geared rotor on another body than its joint's parent, in a robot whose links bend.
+    /// A rigidly geared rotor on another body than its joint's parent, or on another station of it than the joint, in a robot whose
+    /// links bend.
     RemoteRigidRotor,
 }
 
@@ -114,8 +115,9 @@ impl fmt::Display for Defect {
                 f.write_str("a link that bends carries it or its rotor, but its seat names none of that link's stations")
             }
             Self::RemoteRigidRotor => f.write_str(
-                "its rotor has a rigid gear and sits on a link other than the joint's parent, which a robot with flexible links \
-                 cannot have; mount it on the parent, or make the transmission elastic",
+                "its rotor has a rigid gear and sits on a link other than the joint's parent, or on another station of it than the \
+                 joint, which a robot with flexible links cannot have; mount it where the joint sits, or make the \
+                 transmission elastic",
             ),
         }
     }

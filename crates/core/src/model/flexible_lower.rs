@@ -77,7 +77,9 @@ impl<'s> FlexibleRecords<'s> {
             if !self.is_on(parent, body.parent) || !self.is_on(rotor, mount) {
                 return Err(ModelError { body: i, defect: Defect::NoStation });
             }
-            if rigid.bodies[i].has_remote_rigid_rotor() {
+            // What a rigidly geared rotor asks of its carrier must be asked of what the joint sits on.
+            let apart = rigid.bodies[i].rigid_rotor().is_some() && rotor.is_some() && rotor != parent;
+            if rigid.bodies[i].has_remote_rigid_rotor() || apart {
                 return Err(ModelError { body: i, defect: Defect::RemoteRigidRotor });
             }
         }
@@ -112,8 +114,8 @@ impl<'s> FlexibleRecords<'s> {
         let shapes = stations_k.clone().flat_map(|k| &self.shapes[link.shape_range(k)]);
         let shapes =
             shapes.fold(true, |all, s| all && finite(&s.displacement.to_array()) && finite(&s.rotation.to_array()));
-        let shortenings = stations_k.flat_map(|k| &self.shortenings[link.shortening_range(k)]);
-        let shortenings = shortenings.fold(true, |all, s| all && finite(&s.to_array()));
+        let mut shortenings = stations_k.flat_map(|k| &self.shortenings[link.shortening_range(k)]);
+        let shortenings = shortenings.all(|s| finite(&s.to_array()));
         if !(modes && doubles && stations && shapes && shortenings) {
             return Err(Defect::NotFinite("a number of its modes or stations"));
         }

@@ -1,6 +1,6 @@
 //! Energies, and the power that changes them.
 
-use super::{Oracle, law};
+use super::{DriveAt, Oracle, law};
 use crate::State;
 use gyroflex::model::TransmissionSpec;
 
@@ -35,13 +35,14 @@ impl Oracle<'_> {
     /// Energies at a state.
     pub fn energy(&self, s: &State) -> Energy {
         let (nv, tree) = (self.nv(), self.tree(s));
-        let mut elastic = 0.0;
-        for d in self.drives().iter().filter(|d| d.free >= nv) {
-            if let TransmissionSpec::Elastic { spring, .. } = &d.spec.transmission {
-                elastic += law::spring_energy(spring, self.spec.spring_tables, self.deflection(d, s).0);
-            }
-        }
+        let elastic = self.drives().iter().filter(|d| d.free >= nv).map(|d| self.spring_energy(d, s)).sum();
         Energy { kinetic: tree.kinetic_energy(&self.velocities(s)), gravity: tree.gravity_energy(), elastic }
+    }
+
+    /// Energy in the spring of an elastic transmission.
+    pub(crate) fn spring_energy(&self, d: &DriveAt<'_>, s: &State) -> f64 {
+        let TransmissionSpec::Elastic { spring, .. } = &d.spec.transmission else { return 0.0 };
+        law::spring_energy(spring, self.spec.spring_tables, self.deflection(d, s).0)
     }
 
     /// Power of the motor torques and external loads of a state, and what friction and damping take.

@@ -124,14 +124,14 @@ impl Oracle<'_> {
     }
 
     /// `τ_J` and the factor `1 − e'` with which the motor feels it, of an elastic transmission.
-    pub(super) fn transmission(&self, d: &DriveAt<'_>, s: &State) -> (f64, f64) {
+    pub(crate) fn transmission(&self, d: &DriveAt<'_>, s: &State) -> (f64, f64) {
         let (deflection, rate, passed) = self.deflection(d, s);
         let TransmissionSpec::Elastic { spring, damping, .. } = &d.spec.transmission else { return (0.0, 1.0) };
         (law::spring_torque(spring, self.spec.spring_tables, deflection) + damping * rate, passed)
     }
 
     /// `δ = θ − q − e(θ)`, `δ̇` and `1 − e'`.
-    pub(super) fn deflection(&self, d: &DriveAt<'_>, s: &State) -> (f64, f64, f64) {
+    pub(crate) fn deflection(&self, d: &DriveAt<'_>, s: &State) -> (f64, f64, f64) {
         let TransmissionSpec::Elastic { error, .. } = &d.spec.transmission else { return (0.0, 0.0, 1.0) };
         let (theta, thetad) = (s.theta[d.joint], s.thetad[d.joint]);
         let (e, slope) = law::transmission_error(error, d.spec.gear_ratio, theta);
@@ -164,7 +164,7 @@ impl Oracle<'_> {
     }
 
     /// Friction on the link side, per velocity.
-    pub(super) fn link_friction(&self, s: &State) -> Vec<f64> {
+    pub(crate) fn link_friction(&self, s: &State) -> Vec<f64> {
         let mut out = vec![0.0; self.nv()];
         let first = out.len() - self.spec.bodies.len();
         for (i, body) in self.spec.bodies.iter().enumerate() {
@@ -177,7 +177,7 @@ impl Oracle<'_> {
     }
 
     /// Friction of every rotor, reflected.
-    pub(super) fn motor_friction(&self, s: &State) -> Vec<f64> {
+    pub(crate) fn motor_friction(&self, s: &State) -> Vec<f64> {
         let (_, thetad) = self.rotors(s);
         let reflected = |(d, rate): (&DriveSpec, f64)| d.gear_ratio * law::friction(&d.friction, d.gear_ratio * rate);
         let drives = self.drives();
@@ -200,7 +200,7 @@ impl Oracle<'_> {
 }
 
 /// Solves `A x = b` for a symmetric positive definite `A` brought to unit diagonal, with one step of refinement.
-fn solve_scaled(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
+pub(crate) fn solve_scaled(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     let scale = a.diagonal().map(|d| 1.0 / d.sqrt());
     let by = DMatrix::from_diagonal(&scale);
     let scaled = &by * a * &by;

@@ -22,6 +22,7 @@ mod kinematics;
 mod law;
 
 pub use energy::{Energy, Power};
+pub(crate) use equations::solve_scaled;
 pub use equations::{Accelerations, Matrices, Torques};
 
 use crate::State;
@@ -53,14 +54,14 @@ pub struct LinkMotion {
 
 /// A drive and where its coordinates are.
 #[derive(Clone, Copy, Debug)]
-struct DriveAt<'a> {
-    spec: &'a DriveSpec,
+pub(crate) struct DriveAt<'a> {
+    pub(crate) spec: &'a DriveSpec,
     /// Index of its joint among the velocities.
-    joint: usize,
+    pub(crate) joint: usize,
     /// Index of the rotor in `x`.
-    rotor: usize,
+    pub(crate) rotor: usize,
     /// Index of the rotor in `y`; that of the joint behind a rigid gear.
-    free: usize,
+    pub(crate) free: usize,
 }
 
 impl<'a> Oracle<'a> {
@@ -101,7 +102,7 @@ impl<'a> Oracle<'a> {
         matches!(self.fidelity, Fidelity::Complete | Fidelity::Rigid)
     }
 
-    fn drives(&self) -> Vec<DriveAt<'a>> {
+    pub(crate) fn drives(&self) -> Vec<DriveAt<'a>> {
         let nv = self.nv();
         let (mut out, mut joint, mut elastic) = (Vec::<DriveAt<'a>>::new(), 0, 0);
         for body in self.spec.bodies {

@@ -1,11 +1,14 @@
 //! Seeded random robots and states: the same seed and options give the same robot on every machine.
 
+mod beams;
 mod constraint;
 mod drive;
+mod flexible;
 mod robot;
 mod state;
 
 pub use constraint::anchored_at;
+pub use flexible::{FlexibleOptions, RandomFlexible};
 pub use robot::RandomRobot;
 pub use state::random_point;
 

@@ -95,7 +95,7 @@ impl RandomRobot {
 }
 
 /// Of a body of mass: moments of second order are positive, which is all the triangle inequality says.
-fn inertia(dice: &mut Dice) -> SpatialInertia<f64> {
+pub(super) fn inertia(dice: &mut Dice) -> SpatialInertia<f64> {
     let mass = dice.magnitude(0.5, 10.0);
     let second = Matrix3::from_diagonal(&Vector3::from_fn(|_, _| mass * dice.within(0.04, 0.2).powi(2)));
     let turn = dice.rotation().to_rotation_matrix();
