@@ -116,6 +116,12 @@ Optional keys of every line:
   wrenches   [{\"link\": \"tool\", \"force\": [0, 0, -10], \"torque\": [0, 0, 0], \"frame\": \"world\", \"point\": [0, 0, 0]}]
              in world axes (or \"frame\": \"link\") at the link's origin (or at \"point\", in the link's frame)
   gravity    [x, y, z] in world axes
+  held       names of the robot's constraints, couplings and contacts that are in force; contacts stick where they are.
+             Default: all constraints and couplings of the robot's YAML; [] is the tree of joints alone
+  distribution   of inverse dynamics where something is held: {\"torques\": [weights], \"multipliers\": [weights of forces],
+             \"wanted\": [forces], \"passive\": [\"joints that nothing drives\"]}, each of which may be left out
+
+Where something is held, answers have its forces in world axes under `held`, and how many of its directions are `dependent`.
 
 With --floating, q starts with x y z qx qy qz qw and qd with the twist in the root's own frame, angular part first; the six
 root entries of theta, thetad, thetadd, tau and tau_ext may be left out.

@@ -44,8 +44,7 @@ impl Report<'_> {
         }
         out.push_str("  (errors in rad, torques in N m on the link side; m and N for sliding joints)\n");
         if let Some(mode) = &s.fastest_mode {
-            let side = if mode.on_motor { "motor" } else { "link" };
-            let _ = writeln!(out, "fastest mode {:.1} Hz, {side} of {}", mode.frequency, mode.joint);
+            let _ = writeln!(out, "fastest mode {:.1} Hz, {}", mode.frequency, mode.moves_most());
         }
         if let Some(drift) = s.energy_drift {
             let _ = writeln!(out, "energy drift {drift:.1e} of the largest kinetic energy");

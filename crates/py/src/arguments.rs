@@ -10,22 +10,23 @@ use pyo3::prelude::*;
 /// Entries of a floating root in an array over the velocities.
 const ROOT: usize = 6;
 
-const POSITIONS: &str = "give one entry per position coordinate, in the order of `joint_names`; a floating root leads with x y z qx qy qz qw";
-const VELOCITIES: &str =
-    "give one entry per velocity coordinate, in the order of `joint_names`; a floating root leads with six";
+const POSITIONS: &str = "give one entry per position coordinate, in the order of `joint_names`, then `mode_names`; a floating root leads with x y z qx qy qz qw";
+const VELOCITIES: &str = "give one entry per velocity coordinate, in the order of `joint_names`, then `mode_names`; a floating root leads with six";
 
 /// Which entry of an array belongs to what.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
     pub(crate) nq: usize,
     pub(crate) nv: usize,
+    /// How many of these are modes of links that bend, the last ones.
+    pub(crate) modes: usize,
     pub(crate) floating: bool,
 }
 
 impl Layout {
     /// Joint positions; the quaternion of a floating root must be a unit quaternion and is freed of rounding to fewer digits.
     pub(crate) fn positions(&self, value: &Bound<'_, PyAny>, q: &mut [f64]) -> PyResult<()> {
-        arrays::read("q", value, q, POSITIONS)?;
+        arrays::read("q", value, self.given(value, q), POSITIONS)?;
         if !self.floating {
             return Ok(());
         }
@@ -34,7 +35,19 @@ impl Layout {
 
     /// Joint velocities or accelerations.
     pub(crate) fn velocities(&self, name: &str, value: &Bound<'_, PyAny>, out: &mut [f64]) -> PyResult<()> {
-        arrays::read(name, value, out, VELOCITIES)
+        arrays::read(name, value, self.given(value, out), VELOCITIES)
+    }
+
+    /// What of a vector over joints and modes an argument gives: all, or with the modes left out the joints. Those are zero then.
+    fn given<'a>(&self, value: &Bound<'_, PyAny>, out: &'a mut [f64]) -> &'a mut [f64] {
+        let joints = out.len() - self.modes.min(out.len());
+        let root = if self.floating { ROOT } else { 0 };
+        let left_out = |n: usize| n == joints || n + root == joints;
+        if self.modes == 0 || !value.len().is_ok_and(left_out) {
+            return out;
+        }
+        out[joints..].fill(0.0);
+        &mut out[..joints]
     }
 
     /// Positions and velocities of joints and motors.
@@ -75,7 +88,7 @@ impl Layout {
 
     /// Motor torques or generalised forces; a floating root's six may be left out.
     pub(crate) fn forces(&self, name: &str, value: &Bound<'_, PyAny>, out: &mut [f64]) -> PyResult<()> {
-        arrays::read_without(name, value, if self.floating { ROOT } else { 0 }, out, VELOCITIES)
+        arrays::read_without(name, value, if self.floating { ROOT } else { 0 }, self.given(value, out), VELOCITIES)
     }
 
     /// Generalised forces from outside as the algorithms take them: an empty slice for none.

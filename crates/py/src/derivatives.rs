@@ -7,6 +7,7 @@ use crate::workspace::Workspace;
 use gyroflex::dynamics::{
     Acceleration, External, Forward, ForwardDerivatives, InverseDerivatives, PARAMETERS, Regressor, State,
 };
+use gyroflex_sim::bending::RIGID;
 use numpy::PyArray3;
 use pyo3::prelude::*;
 
@@ -141,6 +142,7 @@ impl PyRobot {
     /// stiffness, cubic stiffness and damping of the transmission. SI units, each on its own side of the gear.
     #[pyo3(signature = (*, model=None))]
     fn parameters<'py>(&self, py: Python<'py>, model: Option<&str>) -> PyResult<Vector<'py>> {
+        self.robot.refuse_bending("the regressor", RIGID).map_err(errors::raise)?;
         self.with(model, |w| vector(py, "parameters", &w.dynamics.parameters()))
     }
 }

@@ -22,7 +22,7 @@ mod _gyroflex {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use crate::constraint::{PyConstrainedMotion, PyConstraint, PyImpact};
+    use crate::constraint::{PyConstrainedMotion, PyConstrainedTorques, PyConstraint, PyImpact};
     #[pymodule_export]
     use crate::inverse::PyElasticInverse;
     #[pymodule_export]

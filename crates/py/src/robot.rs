@@ -7,6 +7,7 @@ use crate::inverse::Inverses;
 use crate::workspace::{Pool, Workspace};
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex_sim::Robot;
+use gyroflex_sim::bending::CrossSection;
 use gyroflex_sim::load::nearest::nearest;
 use gyroflex_sim::load::{LoadOptions, load};
 use gyroflex_sim::robot::Link;
@@ -23,6 +24,10 @@ use std::path::PathBuf;
 /// `theta` is the motor position seen through the gear, `q` plus the deflection of the transmission [rad or m]; `tau` the
 /// motor torque seen through the gear [N m or N]. Entries of joints without an elastic transmission are ignored in `theta`,
 /// `thetad` and `thetadd`: there the motor turns with the joint.
+///
+/// Where links bend (`flexible_links`), arrays over the joints go on with the modes (`mode_names`), and may be given without them:
+/// those are zero then. A mode has no motor: its entries of `theta`, `thetad` and `thetadd` are ignored, its entry of `tau` is a
+/// generalised force.
 ///
 /// `model` is one of `complete`, `reduced`, `rigid`, `rigid_reflected`; the default is the one of the robot's file.
 #[pyclass(name = "Robot", module = "gyroflex", frozen)]
@@ -58,8 +63,8 @@ impl PyRobot {
         let options = LoadOptions { floating, model, mimic, ..LoadOptions::default() };
         let robot = py.detach(|| load(&path, &options)).map_err(errors::raise)?;
         let lowered = robot.model(robot.fidelity).map_err(errors::raise)?;
-        let view = lowered.view();
-        let layout = Layout { nq: view.nq(), nv: view.nv(), floating: robot.is_floating() };
+        let (nq, nv, modes) = (lowered.nq(), lowered.nv(), robot.flexible.modes());
+        let layout = Layout { nq, nv, modes, floating: robot.is_floating() };
         errors::warn(py, &robot.warnings)?;
         Ok(Self { robot, pool: Pool::default(), inverses: Inverses::default(), layout })
     }
@@ -72,8 +77,14 @@ impl PyRobot {
 
     /// Names of the joints of one degree of freedom, in coordinate order: all but a floating root.
     #[getter]
-    fn joint_names(&self) -> Vec<&str> {
+    pub(crate) fn joint_names(&self) -> Vec<&str> {
         self.joints().map(|j| j.name.as_str()).collect()
+    }
+
+    /// Names of the modes of links that bend. Their coordinates follow those of the joints in every array.
+    #[getter]
+    fn mode_names(&self) -> Vec<String> {
+        self.robot.mode_names()
     }
 
     /// Names of all links of the URDF, those fused by fixed joints included.
@@ -88,7 +99,7 @@ impl PyRobot {
         self.layout.nq
     }
 
-    /// Number of entries of `qd` and of every other array over the joints.
+    /// Number of entries of `qd` and of every other array over joints and modes.
     #[getter]
     fn nv(&self) -> usize {
         self.layout.nv
@@ -269,7 +280,15 @@ impl PyRobot {
         self.with(None, |w| {
             self.layout.positions(q, &mut w.q)?;
             w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
-            let pose = link.body.map_or(link.placement, |body| link.placement.after(w.poses[body]));
+            let index = self.robot.links.iter().position(|l| l.name == link.name).unwrap_or_default();
+            let section = CrossSection::of_link(&self.robot, index);
+            let pose = match (link.body, section) {
+                (None, _) => link.placement,
+                (Some(body), None) => link.placement.after(w.poses[body]),
+                (Some(body), Some(section)) => {
+                    link.placement.after(section.pose(w.dynamics.eta(&w.q)).after(w.poses[body]))
+                }
+            };
             let [x, y, z] = pose.rotation().rows.map(|row| row.to_array());
             let p = pose.pos.to_array();
             let rows = [x, y, z].into_iter().zip(p).flat_map(|(r, p)| [r[0], r[1], r[2], p]);

@@ -3,7 +3,7 @@
 use crate::errors;
 use gyroflex_sim::error::{Error, ErrorKind};
 use gyroflex_sim::load::{Disk, LoadOptions, load};
-use gyroflex_sim::record::{McapRecorder, MemoryRecorder, Table, TeeRecorder};
+use gyroflex_sim::record::{Impact, McapRecorder, MemoryRecorder, Struck, Table, TeeRecorder};
 use gyroflex_sim::scenario::ScenarioFile;
 use gyroflex_sim::simulate::Simulation;
 use numpy::{PyArray1, PyArrayMethods};
@@ -25,7 +25,7 @@ struct Run {
 }
 
 /// Runs a scenario with the interpreter released; `gyroflex.simulation` makes a `SimulationResult` of what it returns:
-/// arrays and units by name, names of the joints, metadata, warnings, and the error of a run that diverged.
+/// arrays and units by name, names of the joints, metadata, warnings, impacts, and the error of a run that diverged.
 #[pyfunction]
 pub(crate) fn run_scenario<'py>(
     py: Python<'py>,
@@ -41,7 +41,20 @@ pub(crate) fn run_scenario<'py>(
     let (arrays, units) = by_name(py, &run.memory.table())?;
     let joints = PyTuple::new(py, &info.joints)?;
     let error = run.diverged.map(|e| errors::raise(e).into_value(py));
-    (arrays, units, joints, metadata, run.warnings, error).into_pyobject(py)
+    let impacts = run.memory.impacts().iter().map(|impact| told(py, impact, &info.contacts));
+    let impacts = PyTuple::new(py, impacts.collect::<PyResult<Vec<_>>>()?)?;
+    (arrays, units, joints, metadata, run.warnings, impacts, error).into_pyobject(py)
+}
+
+/// An impact: time, energy lost, names of the contacts, and of each its impulse and its velocities before and after.
+fn told<'py>(py: Python<'py>, impact: &Impact, contacts: &[String]) -> PyResult<Bound<'py, PyTuple>> {
+    let names = PyTuple::new(py, impact.struck.iter().map(|s| contacts[s.contact].as_str()))?;
+    let rows = |of: fn(&Struck) -> [f64; 3]| {
+        let numbers: Vec<f64> = impact.struck.iter().flat_map(of).collect();
+        PyArray1::from_vec(py, numbers).reshape([impact.struck.len(), 3])
+    };
+    let (impulse, before, after) = (rows(|s| s.impulse)?, rows(|s| s.before)?, rows(|s| s.after)?);
+    (impact.t, impact.energy_lost, names, impulse, before, after).into_pyobject(py)
 }
 
 fn run(scenario: &Path, log: Option<&Path>) -> PyResult<Run> {
@@ -76,11 +89,11 @@ fn run(scenario: &Path, log: Option<&Path>) -> PyResult<Run> {
     Ok(Run { memory, warnings, diverged })
 }
 
-/// Columns `q.joint1`, `q.joint2`, … as one array `q` of a row per sample; columns without a dot as vectors. Poses of the
-/// links, which follow from `q`, stay in the log.
+/// Columns `q.joint1`, `q.joint2`, … as one array `q` of a row per sample, those of a contact's force as `contact.name.force`; all others as vectors.
+/// Poses of the links, which follow from `q`, stay in the log.
 fn by_name<'py>(py: Python<'py>, table: &Table) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
     let (arrays, units) = (PyDict::new(py), PyDict::new(py));
-    let quantity = |i: usize| table.columns[i].name.split_once('.').map(|(quantity, _)| quantity);
+    let quantity = |i: usize| array_of(&table.columns[i].name);
     let mut first = 0;
     while first < table.columns.len() {
         let mut end = first + 1;
@@ -91,16 +104,28 @@ fn by_name<'py>(py: Python<'py>, table: &Table) -> PyResult<(Bound<'py, PyDict>,
             first = end;
             continue;
         };
-        while end < table.columns.len() && quantity(end) == Some(name) {
+        while end < table.columns.len() && quantity(end).as_ref() == Some(&name) {
             end += 1;
         }
         if name != "frame" {
             let columns = &table.values[first..end];
             let rows: Vec<f64> = (0..table.len()).flat_map(|k| columns.iter().map(move |c| c[k])).collect();
-            arrays.set_item(name, PyArray1::from_vec(py, rows).reshape([table.len(), end - first])?)?;
-            units.set_item(name, PyTuple::new(py, table.columns[first..end].iter().map(|c| c.unit))?)?;
+            arrays.set_item(&name, PyArray1::from_vec(py, rows).reshape([table.len(), end - first])?)?;
+            units.set_item(&name, PyTuple::new(py, table.columns[first..end].iter().map(|c| c.unit))?)?;
         }
         first = end;
     }
     Ok((arrays, units))
+}
+
+/// The array that a column is a part of; `None` if it is a vector of its own.
+fn array_of(column: &str) -> Option<String> {
+    let Some(contact) = column.strip_prefix("contact.") else {
+        return column.split_once('.').map(|(quantity, _)| quantity.to_owned());
+    };
+    // A name may have dots, the quantity has none.
+    match contact.rsplit_once('.') {
+        Some((name, "fx" | "fy" | "fz")) => Some(format!("contact.{name}.force")),
+        _ => None,
+    }
 }

@@ -34,7 +34,7 @@ impl Workspace {
     fn new(robot: &Robot, fidelity: Fidelity) -> Result<Self, gyroflex_sim::Error> {
         let dynamics = Dynamics::new(robot.model(fidelity)?);
         let model = dynamics.model();
-        let (nq, nv) = (model.nq(), model.nv());
+        let (nq, nv) = (dynamics.nq(), dynamics.nv());
         let zeros = || vec![0.0; nv];
         Ok(Self {
             elastic: model.bodies().iter().any(|b| b.is_elastic()),

@@ -27,7 +27,7 @@ def load(path: Path, *, floating: bool = False) -> gyroflex.Robot:
         return gyroflex.Robot.load(path, floating=floating)
 
 
-def evaluate(binary: Path, robot: Path, lines: list[dict[str, list[float]]], *options: str) -> list[dict[str, list]]:
+def evaluate(binary: Path, robot: Path, lines: list[dict[str, object]], *options: str) -> list[dict[str, list]]:
     """What `gyroflex eval` answers to each line."""
     done = run_eval(binary, robot, "".join(json.dumps(line) + "\n" for line in lines), *options)
     assert done.returncode == 0, done.stderr
@@ -58,7 +58,8 @@ def compare(binary: Path, path: Path, robot: gyroflex.Robot, model: str, *option
     forward = [s | {"tau": tau[i], "tau_ext": tau_ext[i]} for i, s in enumerate(states)]
     inverse = [s | {"qdd": qdd[i], "thetadd": thetadd[i]} for i, s in enumerate(states)]
 
-    lines = [{key: value.tolist() for key, value in query.items()} for query in forward + inverse]
+    # Python's calls without constraints are of the tree of joints alone.
+    lines = [{key: value.tolist() for key, value in query.items()} | {"held": []} for query in forward + inverse]
     answers = evaluate(binary, path, lines, "--model", model, "--matrices", *options)
     assert len(answers) == 2 * STATES
     for query, answer in zip(forward, answers[:STATES], strict=True):
@@ -71,6 +72,56 @@ def compare(binary: Path, path: Path, robot: gyroflex.Robot, model: str, *option
         result = robot.inverse_dynamics(**query, model=model)
         assert_same_bits(result[0], answer["tau_j"])
         assert_same_bits(result[1], answer["tau"])
+
+
+def test_eval_gives_the_same_numbers_of_a_robot_that_is_held(binary: Path) -> None:
+    path = PROJECT / "robots" / "biped5_elastic" / "robot.yaml"
+    robot, rng = load(path), np.random.default_rng(12)
+    feet = ["left_foot", "right_foot"]
+    passive = ["hip_x", "hip_z", "trunk_pitch"]
+    for _ in range(STATES):
+        s = random_state(robot, rng)
+        tau, qdd, thetadd = rng.normal(size=(3, robot.nv))
+        weights, wanted = rng.uniform(0.5, 2.0, robot.nv), rng.normal(size=6)
+        held = [
+            gyroflex.Constraint.frame(foot, at_xyz=tuple(robot.placement(foot, s["q"])[:3, 3]), directions="point", stabilisation=100.0)
+            for foot in feet
+        ]
+        state = {key: value.tolist() for key, value in s.items()} | {"held": feet}
+        share = {"torques": weights.tolist(), "multipliers": [1e-3] * 6, "wanted": wanted.tolist(), "passive": passive}
+        forward, inverse = evaluate(
+            binary,
+            path,
+            [
+                state | {"tau": tau.tolist()},
+                state | {"qdd": qdd.tolist(), "thetadd": thetadd.tolist(), "distribution": share},
+            ],
+        )
+        motion = robot.constrained_forward_dynamics(**s, tau=tau, constraints=held)
+        np.testing.assert_allclose(forward["qdd"], motion.qdd, rtol=1e-6, atol=1e-4)
+        # What moves sideways in no direction depends on nothing that could bear it.
+        assert forward["dependent"] == motion.dependent == 2
+        torques = robot.constrained_inverse_dynamics(
+            s["q"], s["qd"], qdd, s["theta"], s["thetad"], thetadd,
+            constraints=held, passive=passive, torque_weights=weights, multiplier_weights=np.full(6, 1e-3), wanted=wanted,
+        )
+        assert inverse["unborne"] == pytest.approx(torques.unborne, rel=1e-6, abs=1e-9)
+        np.testing.assert_allclose(inverse["tau"], torques.tau, rtol=1e-9, atol=1e-9)
+        for k, told in enumerate(inverse["held"]):
+            np.testing.assert_allclose(told["moment"] + told["force"], torques.wrenches[k], rtol=1e-9, atol=1e-9)
+
+
+def test_eval_holds_what_the_file_of_the_robot_holds(binary: Path) -> None:
+    path = PROJECT / "robots" / "four_bar" / "robot.yaml"
+    robot, rng = load(path), np.random.default_rng(13)
+    assert list(robot.constraints) == ["loop"]
+    for _ in range(STATES):
+        s, tau = random_state(robot, rng), rng.normal(size=robot.nv)
+        line = {key: value.tolist() for key, value in (s | {"tau": tau}).items()}
+        motion = robot.constrained_forward_dynamics(**s, tau=tau, constraints=list(robot.constraints.values()))
+        (answer,) = evaluate(binary, path, [line])
+        assert_same_bits(motion.qdd, answer["qdd"])
+        assert_same_bits(motion.multipliers, answer["held"][0]["multipliers"])
 
 
 def test_there_are_robots_to_compare() -> None:

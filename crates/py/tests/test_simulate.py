@@ -13,6 +13,7 @@ from pathlib import Path
 import gyroflex
 import numpy as np
 import pytest
+from conftest import PROJECT
 
 SCENARIO = """
 robot: robot.yaml
@@ -139,6 +140,49 @@ def test_a_scenario_that_cannot_be_is_refused(arm_file: Path, tmp_path: Path) ->
         gyroflex.simulate(scenario(arm_file, "joint.yaml", SCENARIO.replace("elbow: {type", "wrist: {type")))
     with pytest.raises(gyroflex.FileError, match="log"):
         gyroflex.simulate(scenario(arm_file, "track.yaml"), log=tmp_path / "no" / "folder" / "log.mcap")
+
+
+def test_a_walk_counts_its_steps_and_the_ground_only_pushes(tmp_path: Path) -> None:
+    folder = PROJECT / "robots" / "biped5"
+    text = (folder / "walk.yaml").read_text()
+    for old, new in (("robot: robot.yaml", f"robot: {folder / 'robot.yaml'}"), ("duration: 15.0", "duration: 2.2")):
+        assert old in text
+        text = text.replace(old, new)
+    walk = tmp_path / "walk.yaml"
+    walk.write_text(text)
+    result = gyroflex.simulate(walk)
+    touched, carried = {}, np.zeros_like(result.t)
+    for foot in ("left_foot", "right_foot"):
+        force = result[f"contact.{foot}.force"]
+        mode, gap = result[f"contact.{foot}.mode"], result[f"contact.{foot}.gap"]
+        assert force.shape == (len(result.t), 3)
+        assert (result.units[f"contact.{foot}.force"], result.units[f"contact.{foot}.gap"]) == (("N",) * 3, ("m",))
+        on = mode > 0
+        assert (force[on, 2] > 0).all() and (force[~on] == 0).all() and (force[:, 1] == 0).all()
+        assert (np.abs(force[:, 0]) <= 0.8 * force[:, 2] + 1e-6).all()
+        assert (np.abs(gap[on]) < 1e-6).all()
+        touched[foot] = result.t[1:][on[1:] & ~on[:-1]]
+        carried += force[:, 2]
+    # Steps of 0.7 m at 1 m/s: feet come down in turn, 0.7 s apart.
+    steps = sorted((t, foot) for foot, times in touched.items() for t in times)
+    assert len(steps) == 3
+    assert steps[0][1] == steps[2][1] != steps[1][1]
+    np.testing.assert_allclose(np.diff([t for t, _ in steps]), 0.7, atol=0.02)
+    # Over whole strides the ground carries the weight.
+    whole = (result.t >= steps[0][0]) & (result.t < steps[2][0])
+    weight = 9.81 * (14.79 + 2 * 5.28 + 2 * 2.23)
+    assert carried[whole].mean() == pytest.approx(weight, rel=0.02)
+    center = result["center_of_mass"]
+    assert center.shape == (len(result.t), 3) and result["zero_moment_point"].shape == (len(result.t), 2)
+    assert center[-1, 0] - center[0, 0] == pytest.approx(2.2, abs=0.1)
+    assert result["constraint_drift"].max() < 1e-9
+    # Every step is an impact of the foot that comes down: it was on its way down, and rests.
+    blows = [(b.time, b.contacts[int(np.argmin(b.velocity_before[:, 2]))]) for b in result.impacts if b.velocity_before[:, 2].min() < -0.01]
+    assert [foot for _, foot in blows] == [foot for _, foot in steps]
+    np.testing.assert_allclose([t for t, _ in blows], [t for t, _ in steps], atol=2.1e-3)
+    for blow in result.impacts:
+        assert blow.impulse.shape == blow.velocity_after.shape == (len(blow.contacts), 3)
+        assert (blow.impulse[:, 2] >= 0).all() and blow.energy_lost >= -1e-12
 
 
 def test_result_is_a_mapping(result: gyroflex.SimulationResult) -> None:

@@ -1,5 +1,6 @@
 //! Controllers side by side: how far the tip of a robot strays, and how it vibrates when it should stand still.
 
+use crate::bending::CrossSection;
 use crate::dynamics::Dynamics;
 use crate::error::{Error, ErrorKind};
 use crate::load::nearest::nearest;
@@ -116,6 +117,8 @@ fn run(robot: &Robot, file: &ScenarioFile, tip: Option<&str>, plant: Variation) 
 struct Tips {
     dynamics: Dynamics,
     link: Link,
+    /// What carries it on a link that bends.
+    section: Option<CrossSection>,
     poses: Vec<Transform<f64>>,
     last_reference: Vec<f64>,
     actual: Vec<Vec3<f64>>,
@@ -133,18 +136,19 @@ impl Tips {
             return Err(error("robot", "its root floats, and a reference says nothing of it", "fix the root"));
         }
         let names = || robot.links.iter().map(|l| l.name.as_str());
-        let link = match tip {
-            None => robot.links.last(),
-            Some(name) => robot.links.iter().find(|l| l.name == name),
+        let index = match tip {
+            None => robot.links.len().checked_sub(1),
+            Some(name) => robot.links.iter().position(|l| l.name == name),
         };
-        let link = link.cloned().ok_or_else(|| {
+        let index = index.ok_or_else(|| {
             let near = nearest(tip.unwrap_or_default(), names()).unwrap_or("none");
             let problem = format!("the robot has no link `{}`", tip.unwrap_or_default());
             error("tip", &problem, &format!("the nearest known one is `{near}`"))
         })?;
         Ok(Self {
             dynamics: Dynamics::new(robot.model(robot.fidelity)?),
-            link,
+            link: robot.links[index].clone(),
+            section: CrossSection::of_link(robot, index),
             poses: vec![Transform::identity(); robot.bodies.len()],
             last_reference: Vec::new(),
             actual: Vec::new(),
@@ -153,10 +157,12 @@ impl Tips {
         })
     }
 
-    fn place(&mut self, q: &[f64]) -> Result<Vec3<f64>, Error> {
-        self.dynamics.placements(q, &mut self.poses)?;
-        let pose = self.link.body.map_or(self.link.placement, |body| self.link.placement.after(self.poses[body]));
-        Ok(pose.pos)
+    /// The tip with the joints at `q` and the modes of links that bend at `eta`.
+    fn place(&mut self, q: &[f64], eta: &[f64]) -> Result<Vec3<f64>, Error> {
+        self.dynamics.placements(&[q, eta].concat(), &mut self.poses)?;
+        let Some(body) = self.link.body else { return Ok(self.link.placement.pos) };
+        let carried = self.section.as_ref().map_or(self.poses[body], |s| s.pose(eta).after(self.poses[body]));
+        Ok(self.link.placement.after(carried).pos)
     }
 
     fn errors(&self) -> (f64, f64) {
@@ -186,7 +192,8 @@ impl Recorder for Tips {
             self.moving = self.actual.len() + 1;
         }
         self.last_reference.clone_from(&sample.reference);
-        let (actual, wanted) = (self.place(&sample.q)?, self.place(&sample.reference)?);
+        let (actual, wanted) =
+            (self.place(&sample.q, &sample.eta)?, self.place(&sample.reference, &vec![0.0; sample.eta.len()])?);
         self.actual.push(actual);
         self.wanted.push(wanted);
         Ok(())

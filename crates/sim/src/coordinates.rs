@@ -26,6 +26,8 @@ pub struct Coordinates {
     pub joints: Vec<Coordinate>,
     /// Whether a floating root leads the vectors with 7 and 6 entries.
     pub floating: bool,
+    /// Names of the modes of links that bend, which follow the joints in the vectors.
+    pub modes: Vec<String>,
 }
 
 impl Coordinates {
@@ -39,7 +41,7 @@ impl Coordinates {
             q: q0 + body - skip,
             v: v0 + body - skip,
         });
-        Self { joints: joints.collect(), floating }
+        Self { joints: joints.collect(), floating, modes: robot.mode_names() }
     }
 
     /// Number of joints of one degree of freedom.
@@ -55,6 +57,16 @@ impl Coordinates {
     /// Names of the joints, in order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.joints.iter().map(|j| j.name.as_str())
+    }
+
+    /// Length of `q`.
+    pub fn nq(&self) -> usize {
+        self.len() + self.modes.len() + if self.floating { 7 } else { 0 }
+    }
+
+    /// Length of `qd` and every vector of that length.
+    pub fn nv(&self) -> usize {
+        self.len() + self.modes.len() + if self.floating { 6 } else { 0 }
     }
 
     /// Index of the joint of this name, which the key `key` of a file mentions.
@@ -76,21 +88,53 @@ impl Coordinates {
     /// # Errors
     /// An unknown joint, or a list of the wrong length.
     pub fn spread(&self, values: &JointValues, keys: &Keys, key: &str) -> Result<Vec<Option<f64>>, Error> {
-        match values {
-            JointValues::Named(map) => {
-                let mut out = vec![None; self.len()];
-                for (name, value) in map {
-                    out[self.find(name, keys, &format!("{key}.{name}"))?] = Some(*value);
-                }
-                Ok(out)
+        let find = |name: &str| self.find(name, keys, &format!("{key}.{name}"));
+        spread(values, self.len(), find, |given| {
+            let problem = format!("the list has {given} entries, but the robot has {} joints", self.len());
+            let order = self.names().collect::<Vec<_>>().join(", ");
+            fault(keys, key, problem, format!("give one number per joint, in this order: {order}"))
+        })
+    }
+
+    /// One number per mode of links that bend, `None` where `values` is silent.
+    ///
+    /// # Errors
+    /// An unknown mode, or a list of the wrong length.
+    pub fn spread_modes(&self, values: &JointValues, keys: &Keys, key: &str) -> Result<Vec<Option<f64>>, Error> {
+        let names = || self.modes.iter().map(String::as_str);
+        let find = |name: &str| {
+            names().position(|n| n == name).ok_or_else(|| {
+                let remedy = match nearest(name, names()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => "remove it: no link of the robot bends (`flexible_links`)".to_owned(),
+                };
+                fault(keys, &format!("{key}.{name}"), format!("the robot has no mode `{name}`"), remedy)
+            })
+        };
+        spread(values, self.modes.len(), find, |given| {
+            let problem =
+                format!("the list has {given} entries, but the robot's links have {} modes", self.modes.len());
+            fault(keys, key, problem, format!("give one number per mode, in this order: {}", self.modes.join(", ")))
+        })
+    }
+}
+
+/// Values over `n` coordinates.
+fn spread(
+    values: &JointValues,
+    n: usize,
+    find: impl Fn(&str) -> Result<usize, Error>,
+    wrong_length: impl Fn(usize) -> Error,
+) -> Result<Vec<Option<f64>>, Error> {
+    match values {
+        JointValues::Named(map) => {
+            let mut out = vec![None; n];
+            for (name, value) in map {
+                out[find(name)?] = Some(*value);
             }
-            JointValues::Ordered(list) if list.len() == self.len() => Ok(list.iter().copied().map(Some).collect()),
-            JointValues::Ordered(list) => Err(fault(
-                keys,
-                key,
-                format!("the list has {} entries, but the robot has {} joints", list.len(), self.len()),
-                format!("give one number per joint, in this order: {}", self.names().collect::<Vec<_>>().join(", ")),
-            )),
+            Ok(out)
         }
+        JointValues::Ordered(list) if list.len() == n => Ok(list.iter().copied().map(Some).collect()),
+        JointValues::Ordered(list) => Err(wrong_length(list.len())),
     }
 }

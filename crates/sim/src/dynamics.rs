@@ -1,15 +1,19 @@
 //! A model together with the scratch its algorithms need: allocated once, nothing per call.
 
+mod bending;
+mod bending_matrices;
 mod constrained;
 mod derivatives;
 mod matrices;
 
 use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
+pub(crate) use bending::Direction;
+use bending::{Bending, Storage};
 use constrained::ConstraintStorage;
 use gyroflex::dynamics::{
-    self, AbaScratch, Acceleration, CrbaScratch, DerivativeScratch, Energy, External, Forward, ForwardScratch, Inverse,
-    JointSpaceScratch, Power, RneaScratch, State,
+    self, AbaScratch, Acceleration, CrbaScratch, DerivativeScratch, Energy, External, FlexibleMatrices, Forward,
+    ForwardScratch, Inverse, JointSpaceScratch, Power, RneaScratch, State,
 };
 use gyroflex::integrate::{self, StateMut};
 use gyroflex::model::{Model, SizeError};
@@ -30,6 +34,7 @@ pub struct Dynamics {
     derivative_matrix: Vec<f64>,
     operational: Vec<f64>,
     held: ConstraintStorage,
+    bending: Option<Box<Bending>>,
 }
 
 impl Dynamics {
@@ -51,11 +56,12 @@ impl Dynamics {
             derivative_matrix: vec![0.0; dynamics::derivative_matrix_len(&view)],
             operational: Vec::new(),
             held: ConstraintStorage::default(),
+            bending: model.flexible().map(|model| Box::new(Bending::new(&model))),
             model,
         }
     }
 
-    /// The model.
+    /// The model, of the robot whose links do not bend.
     pub fn model(&self) -> Model<'_, f64> {
         self.model.view()
     }
@@ -70,14 +76,14 @@ impl Dynamics {
         &self.model
     }
 
-    /// Length of `q`.
+    /// Length of `q`: of the joints, then of the modes of links that bend.
     pub fn nq(&self) -> usize {
-        self.model().nq()
+        self.model.nq()
     }
 
-    /// Length of every other vector over the joints.
+    /// Length of every other vector over the joints, then the modes.
     pub fn nv(&self) -> usize {
-        self.model().nv()
+        self.model.nv()
     }
 
     /// Accelerations and transmission torques; see [`dynamics::forward_dynamics`].
@@ -91,6 +97,9 @@ impl Dynamics {
         ext: External<f64>,
         out: Forward<f64>,
     ) -> Result<(), Error> {
+        if let (Some(model), Some(bending)) = (self.model.flexible(), &mut self.bending) {
+            return Ok(dynamics::flexible_aba(&model, state, tau, ext, bending.scratch.lend(), out)?);
+        }
         let scratch =
             ForwardScratch { bodies: &mut self.aba, joint_space: &mut self.joint_space, matrix: &mut self.matrix };
         Ok(dynamics::forward_dynamics(&self.model.view(), state, tau, ext, scratch, out)?)
@@ -107,6 +116,9 @@ impl Dynamics {
         ext: External<f64>,
         out: Inverse<f64>,
     ) -> Result<(), Error> {
+        if let (Some(model), Some(bending)) = (self.model.flexible(), &mut self.bending) {
+            return Ok(dynamics::flexible_rnea(&model, state, accel, ext, bending.scratch.lend(), out)?);
+        }
         Ok(dynamics::rnea(&self.model.view(), state, accel, ext, &mut self.rnea, out)?)
     }
 
@@ -115,6 +127,10 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn mass_matrix(&mut self, q: &[f64], m: &mut [f64]) -> Result<(), Error> {
+        if let (Some(model), Some(bending)) = (self.model.flexible(), &mut self.bending) {
+            let out = FlexibleMatrices { mass: m, coupling: &mut bending.unasked };
+            return Ok(dynamics::flexible_mass_matrix(&model, q, bending.scratch.lend(), out)?);
+        }
         Ok(dynamics::crba(&self.model.view(), q, &mut self.crba, m)?)
     }
 
@@ -123,6 +139,10 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn coupling(&mut self, q: &[f64], s: &mut [f64]) -> Result<(), Error> {
+        if let (Some(model), Some(bending)) = (self.model.flexible(), &mut self.bending) {
+            let out = FlexibleMatrices { mass: &mut bending.unasked, coupling: s };
+            return Ok(dynamics::flexible_mass_matrix(&model, q, bending.scratch.lend(), out)?);
+        }
         Ok(dynamics::coupling(&self.model.view(), q, &mut self.crba, s)?)
     }
 
@@ -131,7 +151,10 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn reflected_inertia(&self, b: &mut [f64]) -> Result<(), Error> {
-        Ok(dynamics::reflected_inertia(&self.model.view(), b)?)
+        // A mode has no motor.
+        let joints = b.len() - self.modes().min(b.len());
+        b[joints..].fill(0.0);
+        Ok(dynamics::reflected_inertia(&self.model.view(), &mut b[..joints])?)
     }
 
     /// Kinetic, gravity and elastic energy [J].
@@ -139,6 +162,9 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn energy(&mut self, state: State<f64>) -> Result<Energy<f64>, Error> {
+        if let (Some(model), Some(bending)) = (self.model.flexible(), &mut self.bending) {
+            return Ok(dynamics::flexible_energy(&model, state, bending.scratch.lend())?);
+        }
         Ok(dynamics::energy(&self.model.view(), state, &mut self.moving)?)
     }
 
@@ -147,22 +173,32 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn power(&mut self, state: State<f64>, tau: &[f64], ext: External<f64>) -> Result<Power<f64>, Error> {
+        if let (Some(model), Some(bending)) = (self.model.flexible(), &mut self.bending) {
+            return Ok(dynamics::flexible_power(&model, state, tau, ext, bending.scratch.lend())?);
+        }
         Ok(dynamics::power(&self.model.view(), state, tau, ext, &mut self.moving)?)
     }
 
-    /// Transform from the world to every body's link frame, one entry per body; see [`dynamics::placements`].
+    /// Transform from the world to every body's link frame, one entry per body; see [`dynamics::placements`]. Where links bend, this allocates.
     ///
     /// # Errors
     /// A slice that does not fit the model.
     pub fn placements(&self, q: &[f64], out: &mut [Transform<f64>]) -> Result<(), Error> {
+        if let Some(model) = self.model.flexible() {
+            return Self::flexible_placements(&model, q, out);
+        }
         Ok(dynamics::placements(&self.model.view(), q, out)?)
     }
 
     /// Spatial velocity of every body in its link frame, angular part first, one entry per body; see [`dynamics::velocities`].
+    /// Where links bend, this allocates.
     ///
     /// # Errors
     /// A slice that does not fit the model.
     pub fn velocities(&self, q: &[f64], qd: &[f64], out: &mut [Motion<f64>]) -> Result<(), Error> {
+        if let Some(model) = self.model.flexible() {
+            return Ok(dynamics::flexible_velocities(&model, q, qd, Storage::new(&model).lend(), out)?);
+        }
         Ok(dynamics::velocities(&self.model.view(), q, qd, out)?)
     }
 
@@ -171,6 +207,9 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn rk4(&mut self, state: StateMut<f64>, tau: &[f64], ext: External<f64>, step: f64) -> Result<(), Error> {
+        if self.bending.is_some() {
+            return self.flexible_rk4(state, tau, ext, step);
+        }
         let view = self.model.view();
         let scratch =
             ForwardScratch { bodies: &mut self.aba, joint_space: &mut self.joint_space, matrix: &mut self.matrix };
@@ -189,6 +228,9 @@ impl Dynamics {
         ext: External<f64>,
         step: f64,
     ) -> Result<(), Error> {
+        if self.bending.is_some() {
+            return self.flexible_euler(state, tau, ext, step);
+        }
         let view = self.model.view();
         let scratch =
             ForwardScratch { bodies: &mut self.aba, joint_space: &mut self.joint_space, matrix: &mut self.matrix };

@@ -1,26 +1,38 @@
 //! Static equilibrium: the torques that hold a robot at rest, and the motor positions at which its transmissions carry them.
 
+use crate::contact::THRESHOLD;
 use crate::dynamics::Dynamics;
 use crate::error::Error;
-use gyroflex::dynamics::{Acceleration, External, Inverse, State};
+use gyroflex::dynamics::{
+    Acceleration, Constrained, Constraint, External, Inverse, Regularisation, State, TorqueDistribution,
+};
 use gyroflex::model::{Drive, Knot, Spring};
+use gyroflex::spatial::Force;
 
 /// Solves for equilibrium, again and again without allocating.
 #[derive(Clone, Debug)]
 pub struct Equilibrium {
     rest: Vec<f64>,
     tau_j: Vec<f64>,
+    theta: Vec<f64>,
+    tau: Vec<f64>,
 }
+
+/// What forces cost beside torques: next to nothing, but enough to determine all of them.
+const NEXT_TO_NOTHING: f64 = 1e-6;
+/// Part of the largest load that may be left where nothing bears it: rounding.
+const UNBORNE: f64 = 1e-9;
 
 impl Equilibrium {
     /// Room for a robot whose velocity vectors have `nv` entries.
     pub fn new(nv: usize) -> Self {
-        Self { rest: vec![0.0; nv], tau_j: vec![0.0; nv] }
+        let [rest, tau_j, theta, tau] = [(); 4].map(|()| vec![0.0; nv]);
+        Self { rest, tau_j, theta, tau }
     }
 
     /// Writes the reflected motor positions `theta` at which the transmissions hold the links at `q` against gravity and `ext`,
     /// and the motor torques `tau` that hold the motors there; both have `nv` entries. Without an elastic transmission
-    /// `theta` is the joint's own position. On a floating root `tau` is the wrench that would hold it.
+    /// `theta` is the joint's own position. Modes of links that bend are held where they are: `tau` has the forces on them. On a floating root `tau` is the wrench that would hold it.
     ///
     /// # Errors
     /// A slice that does not fit the model.
@@ -36,7 +48,54 @@ impl Equilibrium {
         let state = State { q, qd: rest, theta: rest, thetad: rest };
         let accel = Acceleration { qdd: rest, thetadd: rest };
         dynamics.inverse(state, accel, ext, Inverse { tau_j: &mut self.tau_j, tau })?;
+        self.motors(dynamics, q, theta, tau);
+        Ok(())
+    }
+
+    /// Reflected motor positions at which a robot stands that is held beside its joints, while its motors bear as little as they can: nothing where
+    /// there are none. Joints without a drive and a floating root bear nothing. The forces of what is held are in `multipliers` then.
+    ///
+    /// # Errors
+    /// A slice or a constraint that does not fit the model.
+    pub fn held(
+        &mut self,
+        dynamics: &mut Dynamics,
+        q: &[f64],
+        ext: External<f64>,
+        (constraints, multipliers): (&[Constraint<f64>], &mut [f64]),
+    ) -> Result<Option<&[f64]>, Error> {
+        let (nv, model) = (self.rest.len(), dynamics.model());
+        let driven = |k: usize| model.bodies().iter().any(|body| body.v_index() == k && body.drive.is_some());
+        let passive: Vec<usize> = (0..nv).filter(|k| !driven(*k)).collect();
+        let (ones, costs) = (vec![1.0; nv], vec![NEXT_TO_NOTHING; multipliers.len()]);
+        let distribution = TorqueDistribution { torques: &ones, passive: &passive, multipliers: &costs, wanted: &[] };
+        let rest = self.rest.as_slice();
+        let mut wrenches = vec![Force::zero(); constraints.len()];
+        dynamics.constrained_inverse(
+            State { q, qd: rest, theta: rest, thetad: rest },
+            Acceleration { qdd: rest, thetadd: rest },
+            ext,
+            constraints,
+            distribution,
+            Regularisation::rank_revealing(THRESHOLD),
+            Inverse { tau_j: &mut self.tau_j, tau: &mut self.tau },
+            Constrained { multipliers: &mut *multipliers, wrenches: &mut wrenches },
+        )?;
+        let borne = self.tau_j.iter().chain(&*multipliers).fold(1.0, |most: f64, x| most.max(x.abs()));
+        if !passive.iter().all(|k| self.tau_j[*k].abs() <= UNBORNE * borne) {
+            return Ok(None);
+        }
+        let (mut theta, mut tau) = (std::mem::take(&mut self.theta), std::mem::take(&mut self.tau));
+        self.motors(dynamics, q, &mut theta, &mut tau);
+        (self.theta, self.tau) = (theta, tau);
+        Ok(Some(&self.theta))
+    }
+
+    /// Where the motors are, and what holds them there, while the transmissions exert `tau_j`.
+    fn motors(&self, dynamics: &Dynamics, q: &[f64], theta: &mut [f64], tau: &mut [f64]) {
         let model = dynamics.model();
+        // A mode has no motor.
+        theta[model.nv()..].copy_from_slice(&q[model.nq()..]);
         for body in model.bodies() {
             let (i, k) = (body.q_index(), body.v_index());
             if body.joint.nv() != 1 {
@@ -50,7 +109,6 @@ impl Equilibrium {
                 tau[k] = share * self.tau_j[k];
             }
         }
-        Ok(())
     }
 
     /// Torques through the transmissions at the last equilibrium, `nv` entries [N m or N].

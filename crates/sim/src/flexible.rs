@@ -199,6 +199,19 @@ impl Flexure {
         self.placement.rotation() * Vec3::new(-self.beam.shortening(j, k, x), 0.0, 0.0)
     }
 
+    /// Multiplies every mass and inertia of the link by a factor; stiffness and damping stay.
+    pub(crate) fn scale_mass(&mut self, factor: f64) {
+        self.beam.mass_per_length.scale(factor);
+        self.beam.polar_inertia_per_length.scale(factor);
+        self.beam.modes.iter_mut().for_each(|mode| mode.lumped *= factor);
+        self.integrals.scale_mass(factor);
+        self.inertia = self.inertia.map(|x| x * factor);
+        self.stations.iter_mut().for_each(|station| station.inertia = station.inertia.map(|x| x * factor));
+        for (j, mode) in self.modes.iter_mut().enumerate() {
+            mode.figures = self.beam.figures(j, &self.integrals);
+        }
+    }
+
     /// The station at `x`, a new one called `name` if there is none.
     pub fn station_at(&mut self, x: f64, name: &str) -> usize {
         let near = |s: &StationInfo| (s.x - x).abs() <= SAME_PLACE * self.beam.length;

@@ -4,6 +4,7 @@ pub mod analyze;
 pub mod batch;
 pub mod beam;
 pub mod bench;
+pub mod bending;
 pub mod compare;
 pub mod contact;
 pub mod controller;

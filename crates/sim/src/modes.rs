@@ -1,7 +1,7 @@
 //! Natural frequencies and decay rates of a robot about a pose, and the largest step they allow an explicit scheme.
 //!
 //! The undamped linearised robot at rest is `M ẍ + K x = 0` in the coordinates `x` of links and elastic motors, with
-//! `M = [[M_l, S], [Sᵀ, B]]` and `K` the tangent stiffness of the transmissions. The stiffness of gravity, which is that of
+//! `M = [[M_l, S], [Sᵀ, B]]` and `K` the tangent stiffness of the transmissions and of links that bend. The stiffness of gravity, which is that of
 //! pendulums and orders of magnitude below that of gears, is left out, and so are velocity terms.
 
 use crate::coordinates::Coordinates;
@@ -17,10 +17,24 @@ use std::f64::consts::TAU;
 pub struct Mode {
     /// Frequency [Hz].
     pub frequency: f64,
-    /// The joint that moves most in it.
+    /// The joint that moves most in it; or the assumed mode of a link that bends, by its name.
     pub joint: String,
     /// Whether that joint's motor moves more than its link.
     pub on_motor: bool,
+    /// Whether it is an assumed mode that moves most.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub bends: bool,
+}
+
+impl Mode {
+    /// What moves most in it, as `motor of joint1`.
+    pub fn moves_most(&self) -> String {
+        match (self.bends, self.on_motor) {
+            (true, _) => format!("mode {}", self.joint),
+            (false, true) => format!("motor of {}", self.joint),
+            (false, false) => format!("link of {}", self.joint),
+        }
+    }
 }
 
 /// The fastest rate of decay.
@@ -28,14 +42,14 @@ pub struct Mode {
 pub struct Decay {
     /// Rate [1/s], of friction and damping alone; friction counts with its slope at standstill.
     pub rate: f64,
-    /// The joint where it is fastest.
+    /// The joint where it is fastest, or the assumed mode of a link that bends.
     pub joint: String,
 }
 
 /// What a robot does by itself near a pose.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Modes {
-    /// All modes of the transmissions, from the slowest to the fastest; rigid motions are not listed.
+    /// All modes of the transmissions and of links that bend, from the slowest to the fastest; rigid motions are not listed.
     pub modes: Vec<Mode>,
     /// The fastest decay, if anything decays.
     pub decay: Option<Decay>,
@@ -52,12 +66,17 @@ pub fn modes(dynamics: &mut Dynamics, joints: &Coordinates, q: &[f64], theta: &[
     dynamics.coupling(q, &mut s)?;
     let model = dynamics.model();
 
-    // Coordinates: all nv of the links, then the motors behind elastic transmissions.
+    let bending = [nv - dynamics.modes(), nv];
+    // Coordinates: all nv of the links and their modes, then the motors behind elastic transmissions.
     let elastic: Vec<&Body<f64>> = model.bodies().iter().filter(|b| b.is_elastic()).collect();
     let size = nv + elastic.len();
     let mut m = DMatrix::zeros(size, size);
     m.view_mut((0, 0), (nv, nv)).copy_from(&DMatrix::from_row_slice(nv, nv, &m_l));
     let (mut stiffness, mut damping) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
+    let [own_stiffness, own_damping] = dynamics.modal_matrices();
+    let place = (bending[0], bending[0]);
+    stiffness.view_mut(place, own_stiffness.shape()).copy_from(&own_stiffness);
+    damping.view_mut(place, own_damping.shape()).copy_from(&own_damping);
     for body in model.bodies().iter().filter(|b| b.joint.nv() == 1) {
         let k = body.v_index();
         damping[(k, k)] += slope_at_rest(&body.friction);
@@ -89,11 +108,14 @@ pub fn modes(dynamics: &mut Dynamics, joints: &Coordinates, q: &[f64], theta: &[
     }
 
     let spectrum = Spectrum::new(m)?;
-    let owner = |coordinate: usize| -> (String, bool) {
+    let owner = |coordinate: usize| -> (String, bool, bool) {
+        if (bending[0]..bending[1]).contains(&coordinate) {
+            return (joints.modes.get(coordinate - bending[0]).cloned().unwrap_or_default(), false, true);
+        }
         let (k, on_motor) =
             if coordinate < nv { (coordinate, false) } else { (elastic[coordinate - nv].v_index(), true) };
         let joint = joints.joints.iter().find(|j| j.v == k).map_or("root", |j| j.name.as_str());
-        (joint.to_owned(), on_motor)
+        (joint.to_owned(), on_motor, false)
     };
     let mut list: Vec<Mode> = spectrum
         .of(stiffness)
@@ -101,13 +123,13 @@ pub fn modes(dynamics: &mut Dynamics, joints: &Coordinates, q: &[f64], theta: &[
         // One zero per rigid motion, up to rounding.
         .filter(|(value, _)| *value > 0.0)
         .map(|(value, coordinate)| {
-            let (joint, on_motor) = owner(coordinate);
-            Mode { frequency: value.sqrt() / TAU, joint, on_motor }
+            let (joint, on_motor, bends) = owner(coordinate);
+            Mode { frequency: value.sqrt() / TAU, joint, on_motor, bends }
         })
         .collect();
     list.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
-    // Each transmission adds one to the rank of K; what is below the largest `elastic.len()` values is rounding.
-    list.drain(..list.len().saturating_sub(elastic.len()));
+    // Each transmission adds one to the rank of K, and so does each mode; what is below as many largest values is rounding.
+    list.drain(..list.len().saturating_sub(elastic.len() + bending[1] - bending[0]));
     let fastest = spectrum.of(damping).into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
     let decay = fastest.filter(|(rate, _)| *rate > 0.0).map(|(rate, c)| Decay { rate, joint: owner(c).0 });
     Ok(Modes { modes: list, decay })

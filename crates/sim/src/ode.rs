@@ -7,7 +7,7 @@ use differential_equations::methods::{DiagonallyImplicitRungeKutta, ExplicitRung
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::status::Status;
 use gyroflex::dynamics::{Forward, State};
-use gyroflex::integrate::{StateMut, normalize, position_rate};
+use gyroflex::integrate::StateMut;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
@@ -136,11 +136,14 @@ impl Buffers {
         self.qd.copy_from_slice(&y[nq + ne..nq + ne + nv]);
         let model = dynamics.model();
         // The length of `q` is the model's, which is all that can be wrong here.
-        let _ = normalize(&model, &mut self.q);
+        let _ = dynamics.normalize(&mut self.q);
         for body in model.bodies().iter().filter(|b| b.joint.nv() == 1) {
             self.theta[body.v_index()] = self.q[body.q_index()];
             self.thetad[body.v_index()] = self.qd[body.v_index()];
         }
+        // Motors of modes do not exist; their entries follow, as those of joints.
+        self.theta[model.nv()..].copy_from_slice(&self.q[model.nq()..]);
+        self.thetad[model.nv()..].copy_from_slice(&self.qd[model.nv()..]);
         for (i, &k) in elastic.iter().enumerate() {
             self.theta[k] = y[nq + i];
             self.thetad[k] = y[nq + ne + nv + i];
@@ -170,7 +173,7 @@ impl ODE<f64, Vec<f64>> for Problem<'_> {
             let state = State { q: &b.q, qd: &b.qd, theta: &b.theta, thetad: &b.thetad };
             let out = Forward { qdd: &mut b.qdd, thetadd: &mut b.thetadd, tau_j: &mut b.tau_j };
             inner.dynamics.forward(state, self.tau, inner.loads.external(), out)?;
-            Ok(position_rate(&inner.dynamics.model(), &b.q, &b.qd, &mut b.q_rate)?)
+            inner.dynamics.position_rate(&b.q, &b.qd, &mut b.q_rate)
         });
         if ok.is_err() {
             // Cannot happen with buffers of the model's own lengths; not a number stops the run with an error.

@@ -1,9 +1,10 @@
 //! A robot as loaded from files: the description in the user's frames, names, frames, and where every number came from.
 
+use crate::bending::Lowered;
 use crate::error::{Error, Warning};
 use crate::flexible::{Flexible, Place};
 use gyroflex::dynamics::Hold;
-use gyroflex::model::{Body, BodySpec, Fidelity, Knot, Model, RobotSpec};
+use gyroflex::model::{Body, BodySpec, Fidelity, FlexibleModel, Knot, Model, RobotSpec};
 use gyroflex::spatial::{SpatialInertia, Transform, Vec3};
 
 /// A loaded robot.
@@ -138,6 +139,7 @@ pub struct OwnedModel {
     bodies: Vec<Body<f64>>,
     knots: Vec<Knot<f64>>,
     gravity: Vec3<f64>,
+    flexible: Option<Box<Lowered>>,
     /// Which physics the records hold.
     pub fidelity: Fidelity,
 }
@@ -156,8 +158,15 @@ impl Robot {
         let spec = self.spec();
         let mut bodies = vec![Body::empty(); self.bodies.len()];
         let mut knots = vec![Knot::EMPTY; spec.knots_needed()];
-        spec.lower(fidelity, &mut bodies, &mut knots).map_err(|e| self.model_error(e))?;
-        Ok(OwnedModel { bodies, knots, gravity: self.gravity, fidelity })
+        let rigid = spec.lower(fidelity, &mut bodies, &mut knots).map_err(|e| self.model_error(e))?;
+        let flexible = match self.flexible.is_empty() {
+            true => None,
+            false => {
+                let lowered = Lowered::new(&self.flexible, &spec, rigid);
+                Some(Box::new(lowered.map_err(|e| self.model_error(e))?))
+            }
+        };
+        Ok(OwnedModel { bodies, knots, gravity: self.gravity, flexible, fidelity })
     }
 
     /// Puts a load on the robot in place of the one it carries: the index of the link that carries it in [`Robot::links`], and the
@@ -192,6 +201,19 @@ impl Robot {
         Some((Place { link, station }, before))
     }
 
+    /// Multiplies mass and inertia of a link, not those of the load on it, by a factor. Whether it has a mass.
+    pub fn scale_mass(&mut self, body: usize, factor: f64) -> bool {
+        let load = self.payload.map(|load| (load.link, load.inertia));
+        self.set_payload(None);
+        let own = self.bodies[body].inertia;
+        self.bodies[body].inertia = own.map(|x| x * factor);
+        if let Some(link) = self.flexible.of_body(Some(body)) {
+            self.flexible.links[link].scale_mass(factor);
+        }
+        self.set_payload(load);
+        own.mass > 0.0
+    }
+
     /// Number of single-degree-of-freedom joints: all but a floating root.
     pub fn is_floating(&self) -> bool {
         self.joints.first().is_some_and(|j| j.urdf_type == "floating")
@@ -199,9 +221,29 @@ impl Robot {
 }
 
 impl OwnedModel {
-    /// The view the algorithms take.
+    /// The view the algorithms take: of the robot whose links do not bend.
     pub fn view(&self) -> Model<'_, f64> {
         Model::new(&self.bodies, &self.knots, self.gravity)
+    }
+
+    /// The view that algorithms of flexible links take, where there are any.
+    pub fn flexible(&self) -> Option<FlexibleModel<'_, f64>> {
+        self.flexible.as_ref().map(|parts| parts.view(self.view()))
+    }
+
+    /// Name of the first link that bends.
+    pub(crate) fn first_bending_link(&self) -> Option<&str> {
+        self.flexible.as_ref().map(|parts| parts.link())
+    }
+
+    /// Length of `q`: of the joints, then of the modes.
+    pub fn nq(&self) -> usize {
+        self.flexible().map_or_else(|| self.view().nq(), |model| model.nq())
+    }
+
+    /// Length of every other vector over joints and modes.
+    pub fn nv(&self) -> usize {
+        self.flexible().map_or_else(|| self.view().nv(), |model| model.nv())
     }
 
     /// Sets gravity in world axes [m/s²].

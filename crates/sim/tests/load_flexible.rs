@@ -389,3 +389,49 @@ fn unknown_keys_and_words_name_the_nearest() {
     let e = upper(&BEAM.replace("1.25", "heavy")).expect_err("it is no number");
     assert!(e.to_string().contains("a number, or a table"), "{e}");
 }
+
+#[test]
+fn a_heavier_link_is_one_read_from_a_heavier_file() {
+    let entry = |mass: f64, lump: f64| {
+        format!(
+            "  lower: {{length: 0.8, mass_per_length: {mass}, geometric_stiffening: true, masses: [{{at: 0.3, mass: {lump}}}], \
+             bending_y: {{stiffness: 10, modes: 2}}}}"
+        )
+    };
+    let read = |entry: String| {
+        let yaml =
+            format!("urdf: r.urdf\nflexible_links:\n{entry}\npayload: {{link: flange, mass: 2, xyz: [0, 0, 0.1]}}\n");
+        // The flange is part of the link's mass as well.
+        let urdf = urdf().replace("<mass value='0.2'/>", "<mass value='0'/>");
+        load_urdf_text(&urdf, "r.urdf", Some(&yaml), &options()).unwrap()
+    };
+    let (mut scaled, heavy) = (read(entry(1.0, 0.5)), read(entry(1.5, 0.75)));
+    let flange = SpatialInertia { mass: 0.0, ..station(&heavy.flexible.links[0], "lower.tip").inertia };
+    assert!(scaled.scale_mass(1, 1.5));
+    let [a, b] = [&scaled, &heavy].map(|r| &r.flexible.links[0]);
+    for (a, b) in a.integrals.pairs.iter().zip(&b.integrals.pairs) {
+        close(a.moments.trace(), b.moments.trace(), 1e-12);
+        close(a.stiffness, b.stiffness, 1e-9);
+        near(a.shortening, b.shortening.to_array(), 1e-12);
+    }
+    same(a.inertia, b.inertia);
+    close(station(a, "lower.mass1").inertia.mass, 0.75, 1e-12);
+    close(station(a, "lower.tip").inertia.mass, 2.0 + flange.mass, 1e-12);
+    same(scaled.bodies[1].inertia, a.total_inertia());
+    a.modes.iter().zip(&b.modes).for_each(|(a, b)| close(a.figures.frequency, b.figures.frequency, 1e-9));
+}
+
+#[test]
+fn rigidly_geared_rotors_far_from_their_joints_are_refused() {
+    let drive = |transmission: &str| {
+        let mount = "mount: {link: upper, axis: [0, 0, 1]}";
+        read(
+            &format!("  lower: {{{BEAM}}}"),
+            &format!("drives: {{grip: {{rotor: {{inertia: 1e-4, {mount}}}, transmission: {transmission}}}}}"),
+        )
+    };
+    let e = drive("rigid").expect_err("it is remote and rigid");
+    assert_eq!((e.file.as_str(), e.element.as_str()), ("robot.yaml:4", "drives.grip.rotor.mount"), "{e}");
+    assert!(e.problem.contains("gear is rigid") && e.remedy.contains("parent link"), "{e}");
+    assert!(drive("{stiffness: 100}").is_ok());
+}

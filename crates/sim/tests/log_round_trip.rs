@@ -3,11 +3,13 @@
 mod log_common;
 
 use gyroflex_sim::record::{CsvRecorder, McapRecorder, MemoryRecorder, Recorder, TeeRecorder, read_states};
-use log_common::{folder, info, sample};
+use log_common::{folder, impact, info, sample};
 use std::path::Path;
 use std::process::Command;
 
 const SAMPLES: usize = 2_000;
+/// An impact comes after every so many samples.
+const IMPACT_EVERY: usize = 50;
 
 /// Writes the made-up run to memory, MCAP and CSV at once.
 fn write(mcap: &Path, csv: &Path) -> MemoryRecorder {
@@ -18,6 +20,9 @@ fn write(mcap: &Path, csv: &Path) -> MemoryRecorder {
         .with(CsvRecorder::create(csv, info()).unwrap());
     for k in 0..SAMPLES {
         tee.record(&sample(k)).unwrap();
+        if k % IMPACT_EVERY == 0 {
+            tee.impact(&impact(k)).unwrap();
+        }
     }
     tee.finish().unwrap();
     drop(tee);
@@ -35,6 +40,9 @@ fn states_read_back_equal_the_record_in_memory() {
     let without_frames = table.columns.iter().filter(|c| !c.name.starts_with("frame.")).count();
     assert_eq!(log.table.columns, table.columns[..without_frames]);
     assert_eq!(log.table.values, table.values[..without_frames]);
+    assert_eq!(log.impacts.len(), SAMPLES / IMPACT_EVERY);
+    assert_eq!(log.impacts, memory.impacts());
+    assert_eq!(log.impacts[1], impact(IMPACT_EVERY));
     assert_eq!(table.get("theta.Ellbogen_ä").unwrap()[7], sample(7).theta[1]);
     assert_eq!(table.columns.iter().find(|c| c.name == "tau.slide").unwrap().unit, "N");
 }
@@ -63,7 +71,7 @@ fn log_has_an_index_its_files_and_its_parameters() {
     let bytes = std::fs::read(folder.join("run.mcap")).unwrap();
     let summary = mcap::Summary::read(&bytes).unwrap().expect("a finished log has a summary");
     let stats = summary.stats.as_ref().unwrap();
-    assert_eq!(stats.message_count as usize, 4 * SAMPLES + 1);
+    assert_eq!(stats.message_count as usize, 4 * SAMPLES + SAMPLES / IMPACT_EVERY + 1);
     assert_eq!(stats.message_end_time, (SAMPLES as u64 - 1) * 1_000_000);
     assert!(summary.chunk_indexes.len() > 2);
     assert!(summary.chunk_indexes.iter().all(|c| c.compression == "zstd" && c.uncompressed_size < 1_100_000));
@@ -76,7 +84,8 @@ fn log_has_an_index_its_files_and_its_parameters() {
     assert!(info().metadata.iter().all(|(key, value)| metadata.metadata.get(key) == Some(value)));
     let mut topics: Vec<_> = summary.channels.values().map(|c| c.topic.clone()).collect();
     topics.sort();
-    assert_eq!(topics, ["/gyroflex/state", "/joint_states", "/motor_states", "/robot_description", "/tf"]);
+    let all = ["/gyroflex/impacts", "/gyroflex/state", "/joint_states", "/motor_states", "/robot_description", "/tf"];
+    assert_eq!(topics, all);
 }
 
 #[test]
@@ -102,6 +111,21 @@ fn log_of_a_robot_without_drives_has_no_motors() {
     let bytes = std::fs::read(&path).unwrap();
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
     assert!(summary.channels.values().all(|c| c.topic != "/motor_states"));
+}
+
+#[test]
+fn log_of_a_robot_without_contacts_has_no_impacts() {
+    let path = folder("log_no_contacts").join("run.mcap");
+    let (mut info, mut sample) = (info(), sample(0));
+    (info.held, info.contacts, sample.footing) = (false, Vec::new(), None);
+    let mut recorder = McapRecorder::create(&path, info).unwrap();
+    recorder.record(&sample).unwrap();
+    assert!(recorder.impact(&impact(0)).is_err(), "the run has no such point");
+    recorder.finish().unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    assert!(summary.channels.values().all(|c| c.topic != "/gyroflex/impacts"));
+    assert!(read_states(&path).unwrap().impacts.is_empty());
 }
 
 /// The libraries users read logs with decode every message to the numbers of the CSV. Runs where `GYROFLEX_MCAP_PYTHON` names

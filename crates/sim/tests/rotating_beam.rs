@@ -3,9 +3,7 @@
 use gyroflex::dynamics::{
     Acceleration, External, FlexibleBody, FlexibleMode, FlexibleScratch, Inverse, State, flexible_hybrid,
 };
-use gyroflex::model::{
-    Body, BodySpec, Fidelity, FlexibleLink, FlexibleRecords, Friction, JointKind, RobotSpec, Seat,
-};
+use gyroflex::model::{Body, BodySpec, Fidelity, FlexibleLink, FlexibleRecords, Friction, JointKind, RobotSpec, Seat};
 use gyroflex::spatial::{Transform, Vec3};
 use gyroflex_sim::beam::{Beam, BeamMode, Boundary, Deflection, Inertia, Profile, Resistance};
 use nalgebra::DMatrix;
@@ -101,7 +99,11 @@ fn a_turning_beam_flaps_at_the_published_frequencies() {
         for (k, published) in published.into_iter().enumerate() {
             let found = found[k].sqrt();
             // Half of the last digit printed, and what eight modes of a beam at rest lack, from above.
-            assert!((found - published).abs() < 2e-4 * published, "Ω = {speed}, mode {}: {found} for {published}", k + 1);
+            assert!(
+                (found - published).abs() < 2e-4 * published,
+                "Ω = {speed}, mode {}: {found} for {published}",
+                k + 1
+            );
         }
     }
 }
@@ -109,7 +111,8 @@ fn a_turning_beam_flaps_at_the_published_frequencies() {
 #[test]
 fn in_the_plane_of_rotation_the_square_is_less_by_that_of_the_speed() {
     for (speed, _) in FLAPPING {
-        let (flap, lag) = (squares(Deflection::BendingZ, true, 5, speed), squares(Deflection::BendingY, true, 5, speed));
+        let (flap, lag) =
+            (squares(Deflection::BendingZ, true, 5, speed), squares(Deflection::BendingY, true, 5, speed));
         for (flap, lag) in flap.into_iter().zip(lag) {
             assert!((flap - speed * speed - lag).abs() < 1e-5 * flap, "Ω = {speed}: {flap} {lag}");
         }

@@ -57,7 +57,13 @@ pub fn response(flexible: Option<(f64, &str)>) -> Result<Response, Error> {
             out.time.push(time);
             (0..2).for_each(|j| out.angles[j].push(q[j]));
         }
-        let sense = if 2 * k < steps / 2 { 1.0 } else if 2 * k < steps { -1.0 } else { 0.0 };
+        let sense = if 2 * k < steps / 2 {
+            1.0
+        } else if 2 * k < steps {
+            -1.0
+        } else {
+            0.0
+        };
         (0..2).for_each(|j| tau[j] = sense * TORQUES[j]);
         let before = [q[0], q[1]];
         let state = StateMut { q: &mut q, qd: &mut qd, theta: &mut theta, thetad: &mut thetad };
@@ -66,7 +72,12 @@ pub fn response(flexible: Option<(f64, &str)>) -> Result<Response, Error> {
     }
     // The last accelerations are asked for to see that they are numbers.
     let state = State { q: &q, qd: &qd, theta: &theta, thetad: &thetad };
-    dynamics.forward(state, &tau, External::none(), Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j })?;
+    dynamics.forward(
+        state,
+        &tau,
+        External::none(),
+        Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j },
+    )?;
     debug_assert!(qdd.iter().all(|a| a.is_finite()));
     out.balance = worst / largest;
     Ok(out)

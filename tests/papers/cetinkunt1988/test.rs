@@ -16,7 +16,12 @@ fn stiffer_links_approach_the_rigid_arm_and_clamped_tips_faster() {
             run.from(&rigid)
         });
         for j in 0..2 {
-            assert!(errors[1][j] < 0.3 * errors[0][j], "clamped-clamped {} is not closer than clamped-free {}", errors[1][j], errors[0][j]);
+            assert!(
+                errors[1][j] < 0.3 * errors[0][j],
+                "clamped-clamped {} is not closer than clamped-free {}",
+                errors[1][j],
+                errors[0][j]
+            );
         }
         if let Some(before) = before {
             // Deflections under the same torques go with 1/EI.

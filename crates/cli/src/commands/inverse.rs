@@ -103,6 +103,9 @@ fn internal(s: &InverseSummary) -> String {
         Verdict::Undamped => "undamped",
         Verdict::Unstable => "unstable",
     };
+    if stability.bends {
+        return format!("{verdict}, of links that bend: {}", stability.reason);
+    }
     let needed = s.joints.iter().map(|j| j.derivatives_needed).max().unwrap_or(0);
     let Some(AtPose { zero, q }) = &stability.slowest else {
         return match (stability.output, stability.verdict) {

@@ -49,7 +49,7 @@ pub fn positions(linearizer: &Linearizer, pose: &Pose) -> Result<Vec<f64>, Error
     let Some(text) = &pose.q else { return Ok(q) };
     let root = if linearizer.layout().floating() { ROOT } else { 0 };
     match values(linearizer, "--q", text)? {
-        Values::All(list) if list.len() == q.len() => q = list,
+        Values::All(list) if [q.len(), q.len() + linearizer.layout().modes()].contains(&list.len()) => q = list,
         Values::All(list) => {
             let all = joint_count(linearizer, "--q", list.len())?;
             q[root..root + all].copy_from_slice(&list);

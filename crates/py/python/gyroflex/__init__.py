@@ -12,6 +12,7 @@ link side of the gear.
 
 from ._gyroflex import (
     ConstrainedMotion,
+    ConstrainedTorques,
     Constraint,
     ElasticInverse,
     FrequencyResponse,
@@ -33,12 +34,14 @@ from .errors import (
     ScenarioError,
     ShapeError,
 )
-from .simulation import SimulationResult, simulate
+from .simulation import ContactImpact, SimulationResult, simulate
 
 __all__ = [
     "ArgumentError",
     "ConstrainedMotion",
+    "ConstrainedTorques",
     "Constraint",
+    "ContactImpact",
     "DivergedError",
     "ElasticInverse",
     "Error",

@@ -11,6 +11,7 @@ from .errors import DivergedError
 
 __all__ = [
     "ConstrainedMotion",
+    "ConstrainedTorques",
     "Constraint",
     "ElasticInverse",
     "FrequencyResponse",
@@ -260,6 +261,34 @@ class ConstrainedMotion:
         """The smallest part of a direction's own mobility that the ones before it leave it, 0 to 1."""
 
 @final
+class ConstrainedTorques:
+    """Torques of a motion with something held, and the forces of it."""
+
+    @property
+    def tau_j(self) -> _Vector:
+        """Torques that the transmissions must exert on the joints, shape `(nv,)` [N m or N]."""
+
+    @property
+    def tau(self) -> _Vector:
+        """Torques that the motors must exert, seen from the link side, shape `(nv,)` [N m or N]."""
+
+    @property
+    def multipliers(self) -> _Vector:
+        """Forces along the constrained directions, constraint by constraint [N or N m]."""
+
+    @property
+    def wrenches(self) -> _Matrix:
+        """Moment and force of each constraint on its link, as those of `ConstrainedMotion`."""
+
+    @property
+    def dependent(self) -> int:
+        """How many directions were left out because others say the same."""
+
+    @property
+    def unborne(self) -> float:
+        """The largest load at a passive joint, or on a floating root, that no constraint bears [N m or N]."""
+
+@final
 class Impact:
     """Velocities after an impact, and the impulses of it."""
 
@@ -461,6 +490,10 @@ class Robot:
     ) -> dict[str, Any]:
         """The dynamics that a link feels: Jacobian, inertia, consistent inverse, velocity and gravity forces, singular values."""
 
+    @property
+    def constraints(self) -> dict[str, Constraint]:
+        """The constraints and couplings of the robot's file by name: what always holds it in simulations."""
+
     def constrained_forward_dynamics(
         self,
         q: ArrayLike,
@@ -476,6 +509,27 @@ class Robot:
         damping: float = 0.0,
     ) -> ConstrainedMotion:
         """Accelerations of links and motors with something held, and the forces that hold it."""
+
+    def constrained_inverse_dynamics(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        qdd: ArrayLike,
+        theta: ArrayLike | None = None,
+        thetad: ArrayLike | None = None,
+        thetadd: ArrayLike | None = None,
+        *,
+        constraints: Sequence[Constraint],
+        passive: Sequence[str] | None = None,
+        torque_weights: ArrayLike | None = None,
+        multiplier_weights: ArrayLike | None = None,
+        wanted: ArrayLike | None = None,
+        model: _Model | None = None,
+        tau_ext: ArrayLike | None = None,
+        threshold: float = 1e-9,
+        damping: float = 0.0,
+    ) -> ConstrainedTorques:
+        """Torques that a motion asks for with something held: of all that make it those that weigh least."""
 
     def impact(
         self,
@@ -574,6 +628,7 @@ def run_scenario(
     tuple[str, ...],
     dict[str, str],
     list[str],
+    tuple[tuple[float, float, tuple[str, ...], _Matrix, _Matrix, _Matrix], ...],
     DivergedError | None,
 ]:
-    """Arrays and units by name, names of the joints, metadata, warnings, and the error of a run that diverged."""
+    """Arrays and units by name, names of the joints, metadata, warnings, impacts, and the error of a run that diverged."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from . import _gyroflex
@@ -14,7 +15,25 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["SimulationResult", "simulate"]
+__all__ = ["ContactImpact", "SimulationResult", "simulate"]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactImpact:
+    """An impact of a robot with the ground: positions stay, velocities jump. Arrays have a row a contact, in world axes."""
+
+    time: float
+    """Simulated time [s]."""
+    energy_lost: float
+    """Kinetic energy before less that after [J]."""
+    contacts: tuple[str, ...]
+    """Names of the points that took part, those that were on the ground already among them."""
+    impulse: NDArray[np.float64]
+    """Impulses of the ground, shape ``(contacts, 3)`` [N s]."""
+    velocity_before: NDArray[np.float64]
+    """Velocities of the points before, shape ``(contacts, 3)`` [m/s]."""
+    velocity_after: NDArray[np.float64]
+    """Velocities of the points after, shape ``(contacts, 3)`` [m/s]."""
 
 
 class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
@@ -35,13 +54,20 @@ class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
     ``significance``                                        ``(samples,)``        of the rotors' coupling [-]
     ``base``                                                ``(samples, 13)``     floating root: ``x y z qx qy qz qw`` in the
                                                                                   world, twist in its own frame, angular first
+    ``contact.<name>.force``                                ``(samples, 3)``      of the ground on a contact, world axes [N]; these
+                                                                                  and the next only where something holds the robot
+    ``contact.<name>.gap``, ``contact.<name>.mode``         ``(samples,)``        height above the ground [m]; 0 off it, 1 held by
+                                                                                  it, 2 slipping
+    ``center_of_mass``                                      ``(samples, 3)``      of the whole robot in the world [m]
+    ``zero_moment_point``                                   ``(samples, 2)``      of the ground's forces, along the ground [m]
+    ``constraint_drift``                                    ``(samples,)``        largest error of what is held so far [m or rad]
     ======================================================  ====================  ==========================================
 
     Joints are those of ``joint_names``, the ones of one degree of freedom in coordinate order. ``units`` has the unit of each
     column of each array.
     """
 
-    __slots__ = ("_arrays", "joint_names", "log", "metadata", "units", "warnings")
+    __slots__ = ("_arrays", "impacts", "joint_names", "log", "metadata", "units", "warnings")
 
     def __init__(
         self,
@@ -50,6 +76,7 @@ class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
         joint_names: tuple[str, ...],
         metadata: Mapping[str, str],
         messages: tuple[str, ...],
+        impacts: tuple[ContactImpact, ...],
         log: str | None,
     ) -> None:
         self._arrays = dict(arrays)
@@ -63,6 +90,8 @@ class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
         """Parameters and versions of the run."""
         self.warnings = messages
         """What was ignored or assumed, and what speaks against the step size."""
+        self.impacts = impacts
+        """Impacts with the ground, in order of time."""
         self.log = log
         """Path of the MCAP log, if one was asked for."""
 
@@ -104,9 +133,10 @@ def simulate(scenario: str | os.PathLike[str], *, log: str | os.PathLike[str] | 
 
     What was ignored or assumed is issued as ``RobotWarning`` and kept in the result's ``warnings``.
     """
-    arrays, units, joint_names, metadata, messages, error = _gyroflex.run_scenario(scenario, log)
+    arrays, units, joint_names, metadata, messages, impacts, error = _gyroflex.run_scenario(scenario, log)
     path = None if log is None else os.fspath(log)
-    result = SimulationResult(arrays, units, joint_names, metadata, tuple(messages), path)
+    struck = tuple(ContactImpact(*impact) for impact in impacts)
+    result = SimulationResult(arrays, units, joint_names, metadata, tuple(messages), struck, path)
     for message in messages:
         warnings.warn(message, RobotWarning, stacklevel=2)
     if error is not None:

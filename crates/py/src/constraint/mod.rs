@@ -1,26 +1,40 @@
-//! A robot with something held: forward dynamics, impacts, and the constraints themselves.
+//! A robot with something held: forward and inverse dynamics, impacts, and the constraints themselves.
 
+mod distribution;
 mod result;
 mod spec;
 
-pub(crate) use result::{PyConstrainedMotion, PyImpact};
+pub(crate) use result::{PyConstrainedMotion, PyConstrainedTorques, PyImpact};
 pub(crate) use spec::PyConstraint;
 
 use crate::arrays::{Matrix, Vector, shaped, vector};
 use crate::errors;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
+use distribution::Distribution;
 use gyroflex::dynamics::{
-    Constrained, Constraint, ConstraintMotion, External, Forward, Impact, Regularisation, State, constraint_rows,
+    Acceleration, Constrained, Constraint, ConstraintMotion, External, Forward, Impact, Inverse, Regularisation, State,
+    constraint_rows,
 };
 use gyroflex::spatial::Force;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use result::Forces;
 
 type Given<'py> = Vec<Bound<'py, PyConstraint>>;
 
 #[pymethods]
 impl PyRobot {
+    /// The constraints and couplings of the robot's file by name: what always holds it in simulations. Calls take what holds it as an argument.
+    #[getter]
+    fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let named = PyDict::new(py);
+        for part in &self.robot.held {
+            named.set_item(&part.name, PyConstraint::of_part(&self.robot, part).into_pyobject(py)?)?;
+        }
+        Ok(named)
+    }
+
     /// Accelerations of links and motors with something held, and the forces that hold it.
     ///
     /// Parameters
@@ -83,6 +97,86 @@ impl PyRobot {
             );
             let forces = Forces { solved: solved.map_err(errors::raise)?, multipliers, wrenches };
             Ok(PyConstrainedMotion { out, forces })
+        })
+    }
+
+    /// Torques that a motion asks for with something held, and the forces that hold it: of all that make the motion those with the least
+    /// `sum(torque_weights * tau_j**2) + sum(multiplier_weights * (multipliers - wanted)**2)`.
+    ///
+    /// Equal weights give the torques of least norm. What is to bear nothing, as a foot about to be lifted, is left out of `constraints`: the
+    /// motion is given.
+    ///
+    /// Parameters
+    /// ----------
+    /// q, qd, qdd
+    ///     Joint positions, shape `(nq,)`, velocities and accelerations, shape `(nv,)` [rad or m, per s, per s²]. Only motions that keep the
+    ///     constraints can be made.
+    /// theta, thetad, thetadd
+    ///     The same of the motors, seen from the link side, shape `(nv,)`. Needed if the model has elastic joints.
+    /// constraints
+    ///     What is held: `Constraint`s; none that slips.
+    /// passive
+    ///     Names of joints that nothing drives, so that constraints must bear all of their load. A floating root always is.
+    /// torque_weights
+    ///     What torques cost, above zero, shape `(nv,)`; of a floating root's six entries nothing is read, and they may be left out. Default: ones.
+    /// multiplier_weights
+    ///     What forces along the constrained directions cost, not negative, shape `(m,)` with `m` directions. Zero is allowed where the torques
+    ///     alone determine the forces. Default: 1e-6.
+    /// wanted
+    ///     Forces along the constrained directions to stay near to, shape `(m,)` [N or N m]. Default: zeros.
+    /// model
+    ///     Which physics of the motors.
+    /// tau_ext
+    ///     Generalised forces on the link side of the joints that help, shape `(nv,)` [N m or N].
+    /// threshold, damping
+    ///     As in `constrained_forward_dynamics`.
+    ///
+    /// Returns
+    /// -------
+    /// ConstrainedTorques
+    ///     Torques `tau_j`, `tau`, forces `multipliers`, `wrenches`, and the load `unborne` that nothing bears.
+    #[pyo3(signature = (q, qd, qdd, theta=None, thetad=None, thetadd=None, *, constraints, passive=None, torque_weights=None, multiplier_weights=None, wanted=None, model=None, tau_ext=None, threshold=1e-9, damping=0.0))]
+    #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
+    fn constrained_inverse_dynamics<'py>(
+        &self,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        qdd: &Bound<'py, PyAny>,
+        theta: Option<&Bound<'py, PyAny>>,
+        thetad: Option<&Bound<'py, PyAny>>,
+        thetadd: Option<&Bound<'py, PyAny>>,
+        constraints: Given<'py>,
+        passive: Option<Vec<String>>,
+        torque_weights: Option<&Bound<'py, PyAny>>,
+        multiplier_weights: Option<&Bound<'py, PyAny>>,
+        wanted: Option<&Bound<'py, PyAny>>,
+        model: Option<&str>,
+        tau_ext: Option<&Bound<'py, PyAny>>,
+        threshold: f64,
+        damping: f64,
+    ) -> PyResult<PyConstrainedTorques> {
+        let (held, regularisation) = (self.held(&constraints)?, regularisation(threshold, damping)?);
+        let sharing = Distribution::read(self, &held, passive, torque_weights, multiplier_weights, wanted)?;
+        self.with(model, |w| {
+            self.layout.state(w, q, qd, theta, thetad)?;
+            self.layout.velocities("qdd", qdd, &mut w.first)?;
+            self.layout.motors("thetadd", thetadd, w.elastic, &mut w.second)?;
+            let Workspace { dynamics, q, qd, theta, thetad, first: qdd, second: thetadd, tau_ext: room, .. } = w;
+            let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
+            let ([mut tau_j, mut tau, _], mut multipliers, mut wrenches) = self.room(&held);
+            let solved = dynamics.constrained_inverse(
+                State { q, qd, theta, thetad },
+                Acceleration { qdd, thetadd },
+                ext,
+                &held,
+                sharing.view(),
+                regularisation,
+                Inverse { tau_j: &mut tau_j, tau: &mut tau },
+                Constrained { multipliers: &mut multipliers, wrenches: &mut wrenches },
+            );
+            let forces = Forces { solved: solved.map_err(errors::raise)?, multipliers, wrenches };
+            let unborne = sharing.passive().iter().fold(0.0, |most: f64, k| most.max(tau_j[*k].abs()));
+            Ok(PyConstrainedTorques { tau_j, tau, unborne, forces })
         })
     }
 

@@ -1,4 +1,4 @@
-//! What constrained dynamics and impacts find.
+//! What dynamics and impacts of a robot with something held find.
 
 use crate::arrays::{Matrix, Vector, shaped, vector};
 use gyroflex::dynamics::Solved;
@@ -76,6 +76,55 @@ impl PyConstrainedMotion {
     #[getter]
     fn independence(&self) -> f64 {
         self.forces.solved.independence
+    }
+}
+
+/// Torques of a motion with something held, and the forces of it. Every array is a new one.
+#[pyclass(name = "ConstrainedTorques", module = "gyroflex", frozen)]
+pub(crate) struct PyConstrainedTorques {
+    pub(super) tau_j: Vec<f64>,
+    pub(super) tau: Vec<f64>,
+    pub(super) unborne: f64,
+    pub(super) forces: Forces,
+}
+
+#[pymethods]
+impl PyConstrainedTorques {
+    /// Torques that the transmissions must exert on the joints, shape `(nv,)` [N m or N].
+    #[getter]
+    fn tau_j<'py>(&self, py: Python<'py>) -> PyResult<Vector<'py>> {
+        vector(py, "tau_j", &self.tau_j)
+    }
+
+    /// Torques that the motors must exert, seen from the link side, shape `(nv,)` [N m or N].
+    #[getter]
+    fn tau<'py>(&self, py: Python<'py>) -> PyResult<Vector<'py>> {
+        vector(py, "tau", &self.tau)
+    }
+
+    /// Forces along the constrained directions, constraint by constraint [N or N m].
+    #[getter]
+    fn multipliers<'py>(&self, py: Python<'py>) -> PyResult<Vector<'py>> {
+        vector(py, "multipliers", &self.forces.multipliers)
+    }
+
+    /// Wrench of each constraint on its link, about the origin of its frame in world axes, shape `(constraints, 6)`: moment [N m], force
+    /// [N]. Zero for coupled joints.
+    #[getter]
+    fn wrenches<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        self.forces.wrenches(py)
+    }
+
+    /// How many directions were left out because others say the same.
+    #[getter]
+    fn dependent(&self) -> usize {
+        self.forces.solved.dependent as usize
+    }
+
+    /// The largest load at a passive joint, or on a floating root, that no constraint bears [N m or N]: not small, and the motion is impossible.
+    #[getter]
+    fn unborne(&self) -> f64 {
+        self.unborne
     }
 }
 

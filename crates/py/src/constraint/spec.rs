@@ -7,7 +7,9 @@ use crate::operational::direction;
 use crate::robot::PyRobot;
 use gyroflex::dynamics::{Anchor, Constraint, Contact, Directions, Frame, Hold};
 use gyroflex::spatial::{Mat3, Transform, Vec3};
+use gyroflex_sim::Robot;
 use gyroflex_sim::load::nearest::nearest;
+use gyroflex_sim::robot::HeldPart;
 use pyo3::prelude::*;
 
 /// How far the axes of a pose may be from a rotation.
@@ -151,6 +153,25 @@ impl PyConstraint {
 }
 
 impl PyConstraint {
+    /// What a robot's file holds, by names again: a body is named by the link that its joint moves.
+    pub(super) fn of_part(robot: &Robot, part: &HeldPart) -> Self {
+        let link = |body: usize| robot.joints[body].child_link.clone();
+        let hold = match part.hold {
+            Hold::Frame { frame, anchor, directions } => Named::Frame {
+                link: link(frame.body),
+                placement: frame.placement,
+                to: anchor.body.map(link),
+                at: anchor.placement,
+                directions,
+            },
+            Hold::Joints { joint, follows, ratio, offset } => {
+                let [joint, follows] = [joint, follows].map(|i| robot.joints[i].name.clone());
+                Named::Joints { joint, follows, ratio, offset }
+            }
+        };
+        Self { hold, stabilisation: part.stabilisation, contact: None }
+    }
+
     /// The constraint on this robot.
     pub(super) fn resolve(&self, robot: &PyRobot) -> PyResult<Constraint<f64>> {
         let hold = match &self.hold {

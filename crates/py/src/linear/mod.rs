@@ -163,9 +163,12 @@ impl PyRobot {
 
     /// The positions given, or zero.
     fn start(&self, linearizer: &Linearizer, q: Argument<'_, '_>) -> PyResult<Vec<f64>> {
-        let mut positions = linearizer.zero_position();
-        if let Some(q) = q {
-            self.layout.positions(q, &mut positions)?;
+        let Some(q) = q else { return Ok(linearizer.zero_position()) };
+        let mut positions = vec![0.0; self.layout.nq];
+        self.layout.positions(q, &mut positions)?;
+        // Modes that are not given are found: the links hang at rest.
+        if q.len().is_ok_and(|n| n + self.layout.modes == self.layout.nq) {
+            positions.truncate(self.layout.nq - self.layout.modes);
         }
         Ok(positions)
     }
@@ -180,7 +183,9 @@ impl PyRobot {
     ) -> PyResult<OperatingPoint> {
         let nv = self.layout.nv;
         let elastic = !linearizer.layout().elastic().is_empty();
-        let mut state = StateVec { q: q.to_vec(), ..StateVec::zeros(0, nv) };
+        let mut all = q.to_vec();
+        all.resize(self.layout.nq, 0.0);
+        let mut state = StateVec { q: all, ..StateVec::zeros(0, nv) };
         self.layout.velocities("qd", qd, &mut state.qd)?;
         self.layout.motors("theta", theta, elastic, &mut state.theta)?;
         self.layout.motors("thetad", thetad, elastic, &mut state.thetad)?;

@@ -54,6 +54,7 @@ pub fn bounds(robot: &Robot, options: &Options) -> Result<Bounds, Error> {
     if n == 0 {
         return Ok(Bounds::default());
     }
+    robot.refuse_bending("the search for bounds", crate::bending::RIGID)?;
     let mut complete = Dynamics::new(robot.model(Fidelity::Complete)?);
     let search = |limits: &[[f64; 2]], f: &mut dyn FnMut(&[f64]) -> Result<f64, Error>| -> Result<Found, Error> {
         let mut sequence = Sequence::new(limits.len(), options.seed);

@@ -44,6 +44,7 @@ impl Tally {
 
 /// Compares the two models along the motions.
 pub(super) fn compare(robot: &Robot, motions: &[Motion], options: &Options) -> Result<Report, Error> {
+    robot.refuse_bending("the comparison of models", crate::bending::RIGID)?;
     let mut complete = Dynamics::new(robot.model(Fidelity::Complete)?);
     let mut reduced = Dynamics::new(robot.model(Fidelity::Reduced)?);
     let coordinates = Coordinates::of(robot);

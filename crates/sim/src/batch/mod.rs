@@ -60,6 +60,7 @@ pub struct InverseBatch<'a> {
 /// # Errors
 /// An array whose length is not the same number of rows as the others'.
 pub fn forward(model: &OwnedModel, given: ForwardBatch, out: Forward<f64>) -> Result<(), Error> {
+    model.refuse_bending("a batch of states")?;
     let model = &model.view();
     let (nq, nv) = (model.nq(), model.nv());
     let rows = rows::count("q", given.q, nq)?;
@@ -90,6 +91,7 @@ pub fn forward(model: &OwnedModel, given: ForwardBatch, out: Forward<f64>) -> Re
 /// # Errors
 /// An array whose length is not the same number of rows as the others'.
 pub fn inverse(model: &OwnedModel, given: InverseBatch, out: Inverse<f64>) -> Result<(), Error> {
+    model.refuse_bending("a batch of states")?;
     let model = &model.view();
     let (nq, nv) = (model.nq(), model.nv());
     let rows = rows::count("q", given.q, nq)?;

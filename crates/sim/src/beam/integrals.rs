@@ -112,22 +112,27 @@ impl Beam {
             let (mass, polar) = (w * self.mass_per_length.at(x), w * self.polar_inertia_per_length.at(x));
             inertia = inertia + slice(mass, polar, x);
             let beyond = if self.stiffening { self.mass_per_length.beyond(x, self.length) } else { [0.0; 2] };
-            for j in 0..n {
-                let (a, twist_a) = self.field(j, x);
-                modes[j].momentum += a.scale(mass);
-                modes[j].moments =
-                    modes[j].moments + Mat3::outer(along.scale(x), a).scale(mass) + twisted(twist_a * polar);
-                for k in 0..n {
-                    let (b, twist_b) = self.field(k, x);
+            let at: Vec<Fields> = self.modes.iter().map(|mode| Fields::of(mode, x)).collect();
+            for (j, a) in at.iter().enumerate() {
+                modes[j].momentum += a.displacement.scale(mass);
+                let moments = Mat3::outer(along, a.displacement).scale(mass * x);
+                modes[j].moments = modes[j].moments + moments + twisted(a.twist * polar);
+                for (k, b) in at.iter().enumerate() {
                     let pair = &mut pairs[j * n + k];
-                    let turning = across().scale(0.5 * polar * twist_a * twist_b);
-                    pair.moments = pair.moments + Mat3::outer(a, b).scale(mass) + turning;
-                    pair.stiffness += w * self.strain_energy(j, k, x);
+                    let turning = across().scale(0.5 * polar * a.twist * b.twist);
+                    pair.moments = pair.moments + Mat3::outer(a.displacement, b.displacement).scale(mass) + turning;
+                    if self.modes[j].deflection != self.modes[k].deflection {
+                        continue;
+                    }
+                    // K_jk (eq. 29.a–d); modes with a frequency of their own are orthogonal
+                    if let [Some(stiffness), Some(_)] = [a.stiffness, b.stiffness] {
+                        pair.stiffness += w * stiffness * a.strain * b.strain;
+                    }
                     // ∫ s dm and ∫ x s dm, the order of the two integrals changed
-                    let slopes = w * self.slopes(j, k, x);
+                    let slopes = w * a.slope * b.slope;
                     pair.shortening += along.scale(-slopes * beyond[0]);
-                    pair.shortening_moments =
-                        pair.shortening_moments + Mat3::outer(along, along).scale(-slopes * beyond[1]);
+                    let moments = Mat3::outer(along, along).scale(-slopes * beyond[1]);
+                    pair.shortening_moments = pair.shortening_moments + moments;
                 }
             }
         }
@@ -148,7 +153,8 @@ impl Beam {
         let pair = &integrals.pairs[j * self.modes.len() + j];
         let (stiffness, mass) = (pair.stiffness, pair.moments.trace());
         let total_mass = mass + self.modes[j].lumped;
-        let damping_ratio = self.modes[j].damping_ratio;
+        // D = 2 ζ √(K m)
+        let damping_ratio = 0.5 * pair.damping / (stiffness * total_mass).sqrt();
         ModeFigures { stiffness, mass, total_mass, frequency: frequency(stiffness, total_mass), damping_ratio }
     }
 
@@ -174,35 +180,6 @@ impl Beam {
         dependent.map_or(Ok(()), |j| Err(BeamError::Dependent(j - 1)))
     }
 
-    /// Displacement of the axis and turning about it, per unit of mode `j`.
-    fn field(&self, j: usize, x: f64) -> (Vec3<f64>, f64) {
-        let mode = &self.modes[j];
-        let value = mode.shape.derivative(x, 0);
-        let twist = if mode.deflection == Deflection::Torsion { value } else { 0.0 };
-        (mode.deflection.direction().scale(value), twist)
-    }
-
-    /// The integrand of `K_jk` (eq. 29.a–d). Modes with a frequency of their own are orthogonal.
-    fn strain_energy(&self, j: usize, k: usize, x: f64) -> f64 {
-        let [a, b] = [j, k].map(|i| &self.modes[i]);
-        match (&a.resistance, &b.resistance) {
-            (Resistance::Stiffness(profile), Resistance::Stiffness(_)) if a.deflection == b.deflection => {
-                let order = a.deflection.strain_order();
-                profile.at(x) * a.shape.derivative(x, order) * b.shape.derivative(x, order)
-            }
-            _ => 0.0,
-        }
-    }
-
-    /// `φ'_j·φ'_k`.
-    fn slopes(&self, j: usize, k: usize, x: f64) -> f64 {
-        let [a, b] = [j, k].map(|i| &self.modes[i]);
-        if !self.stiffening || a.deflection != b.deflection || !a.deflection.bends() {
-            return 0.0;
-        }
-        a.shape.derivative(x, 1) * b.shape.derivative(x, 1)
-    }
-
     fn breaks(&self) -> Vec<f64> {
         let mut all: Vec<f64> = self.mass_per_length.breaks().chain(self.polar_inertia_per_length.breaks()).collect();
         for mode in &self.modes {
@@ -212,6 +189,37 @@ impl Beam {
             }
         }
         pieces(0.0, self.length, all.into_iter())
+    }
+}
+
+/// What one mode does at a point of the beam, per unit of its coordinate.
+struct Fields {
+    /// Displacement of the axis.
+    displacement: Vec3<f64>,
+    /// Turning about the axis.
+    twist: f64,
+    /// Slope of a bent axis; zero for rods.
+    slope: f64,
+    /// Curvature, or the slope of a rod.
+    strain: f64,
+    /// What resists it; `None` for a mode with a frequency of its own.
+    stiffness: Option<f64>,
+}
+
+impl Fields {
+    fn of(mode: &BeamMode, x: f64) -> Self {
+        let (deflection, shape) = (mode.deflection, &mode.shape);
+        let value = shape.derivative(x, 0);
+        Self {
+            displacement: deflection.direction().scale(value),
+            twist: if deflection == Deflection::Torsion { value } else { 0.0 },
+            slope: if deflection.bends() { shape.derivative(x, 1) } else { 0.0 },
+            strain: shape.derivative(x, deflection.strain_order()),
+            stiffness: match &mode.resistance {
+                Resistance::Stiffness(profile) => Some(profile.at(x)),
+                Resistance::Frequency(_) => None,
+            },
+        }
     }
 }
 
@@ -240,6 +248,21 @@ impl Integrals {
             }
         });
         Self { modes: modes.collect(), pairs: pairs.collect(), inertia: self.inertia.seen_from_parent(placement) }
+    }
+}
+
+impl Integrals {
+    /// Multiplies every mass by a factor; stiffness and damping stay.
+    pub(crate) fn scale_mass(&mut self, factor: f64) {
+        for mode in &mut self.modes {
+            *mode = Mode { momentum: mode.momentum.scale(factor), moments: mode.moments.scale(factor) };
+        }
+        for pair in &mut self.pairs {
+            pair.moments = pair.moments.scale(factor);
+            pair.shortening = pair.shortening.scale(factor);
+            pair.shortening_moments = pair.shortening_moments.scale(factor);
+        }
+        self.inertia = self.inertia.map(|x| x * factor);
     }
 }
 

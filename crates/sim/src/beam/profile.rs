@@ -26,6 +26,14 @@ impl Profile {
         }
     }
 
+    /// Multiplies it by a factor.
+    pub fn scale(&mut self, factor: f64) {
+        match self {
+            Self::Constant(value) => *value *= factor,
+            Self::Table(points) => points.iter_mut().for_each(|p| p[1] *= factor),
+        }
+    }
+
     /// Where its slope may jump.
     pub fn breaks(&self) -> impl Iterator<Item = f64> {
         let points: &[[f64; 2]] = match self {

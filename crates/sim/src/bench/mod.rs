@@ -68,6 +68,7 @@ pub fn bench(
     calls: usize,
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Report, Error> {
+    robot.refuse_bending("`bench`", crate::bending::RIGID)?;
     let points = states::random(robot);
     let clock = clock_cost();
     let mut report = Report {

@@ -6,9 +6,10 @@ use super::{Contacts, Event, EventKind, Mode, SHARED, THRESHOLD, chatter, is_sha
 use crate::dynamics::Dynamics;
 use crate::error::Error;
 use crate::loads::Loads;
+use crate::record::{Impact, Struck};
 use crate::scenario::Ground;
 use crate::simulate::StateVec;
-use gyroflex::dynamics::{Constrained, Forward, Impact, Regularisation, Solved};
+use gyroflex::dynamics::{self, Constrained, Forward, Regularisation, Solved};
 
 /// Slower than this a point does not leave the ground after an impact [m/s].
 const LEAVES: f64 = 1e-9;
@@ -87,8 +88,19 @@ impl Contacts {
         self.refresh();
         // Bodies that rock from foot to foot would do so infinitely many times before they rest: where the blow is so soft, no foot leaves by it.
         let soft = -self.rise(contact, dynamics, &state.q, &state.qd)? <= ground.resting_speed;
+        self.measure(dynamics, state.view())?;
+        let before: Vec<_> = self.closed.iter().map(|i| self.velocity(*i)).collect();
+        let energy = dynamics.energy(state.view())?.kinetic;
         let impulses = self.collide(dynamics, state, &ground, soft)?;
         self.measure(dynamics, state.view())?;
+        let struck = self.closed.iter().zip(&impulses).zip(before).map(|((i, impulse), before)| Struck {
+            contact: *i,
+            impulse: *impulse,
+            before,
+            after: self.velocity(*i),
+        });
+        let struck = struck.collect();
+        self.impacts.push(Impact { t, struck, energy_lost: energy - dynamics.energy(state.view())?.kinetic });
         for (i, impulse) in self.closed.clone().into_iter().zip(impulses) {
             let (off, along) = (self.off_ground(i), self.along_ground(i));
             let leaves = off > LEAVES && !soft;
@@ -113,6 +125,12 @@ impl Contacts {
         }
         self.refresh();
         Ok(())
+    }
+
+    /// Velocity of a closed contact in world axes when it was measured last [m/s].
+    fn velocity(&self, contact: usize) -> [f64; 3] {
+        let along = self.along_ground(contact);
+        [along.x, along.y, self.off_ground(contact)]
     }
 
     /// Velocities after an impact of all closed contacts, and their impulses in world axes [N s].
@@ -175,7 +193,7 @@ impl Contacts {
     ) -> Result<Solved<f64>, Error> {
         let [mut qd, mut thetad, mut gears] = core::mem::take(&mut self.motion);
         let mut solve = |regularisation| {
-            let out = Impact { qd: &mut qd, thetad: &mut thetad, gears: &mut gears };
+            let out = dynamics::Impact { qd: &mut qd, thetad: &mut thetad, gears: &mut gears };
             let forces = Constrained { multipliers: &mut self.multipliers, wrenches: &mut self.wrenches };
             dynamics.impact(state.view(), &self.constraints, release, regularisation, out, forces)
         };

@@ -8,37 +8,36 @@ mod events;
 mod impacts;
 mod impulses;
 mod points;
+mod report;
+mod start;
 mod stepper;
 mod touching;
 
 pub use events::{Event, EventKind};
 pub use points::Mode;
+pub(crate) use points::STABILISATION;
 pub use stepper::Advance;
 
 use crate::dynamics::Dynamics;
-use crate::error::{Error, ErrorKind, Warning};
+use crate::error::{Error, ErrorKind};
 use crate::load::yaml::Keys;
 use crate::loads::Loads;
-use crate::record::{Footing, Touch};
+use crate::record::Impact;
 use crate::robot::Robot;
 use crate::scenario::{Ground, fault};
 use crate::simulate::StateVec;
 use gyroflex::dynamics::{Constrained, Constraint, ConstraintMotion, Forward, Regularisation, Solved, State};
 use gyroflex::spatial::{Force, Motion, Transform, Vec3};
-use points::{Point, SLOW};
+use points::Point;
 use stepper::Stages;
 
 /// Directions that less than this part of their own compliance tells from others are dependent.
 pub(crate) const THRESHOLD: f64 = 1e-9;
 /// Part of their own compliance by which contacts that share a load give way, and what tells their directions from others then. The ground gives
 /// way by next to nothing: it accelerates by that part of what it holds back.
-const SHARED: Regularisation<f64> = Regularisation { threshold: 1e-13, damping: 1e-8 };
+pub(crate) const SHARED: Regularisation<f64> = Regularisation { threshold: 1e-13, damping: 1e-8 };
 /// What redundant contacts may miss each other by to share a load [m/s² or m/s]: to hold both of two velocities would take endless forces.
 const AT_ODDS: f64 = 1e-9;
-/// Points that start this near to the ground are on it [m].
-const ON_GROUND: f64 = 1e-6;
-/// Constraints that start farther off than this are not kept [m or rad].
-const START: f64 = 1e-3;
 
 /// Everything that holds a robot beside its joints.
 #[derive(Clone, Debug)]
@@ -63,6 +62,7 @@ pub struct Contacts {
     motion: [Vec<f64>; 3],
     stages: Stages,
     events: Vec<Event>,
+    impacts: Vec<Impact>,
     largest_drift: f64,
 }
 
@@ -100,6 +100,7 @@ impl Contacts {
             motion: [(); 3].map(|()| vec![0.0; nv]),
             stages: Stages::new(nq, nv),
             events: Vec::new(),
+            impacts: Vec::new(),
             largest_drift: 0.0,
         })
     }
@@ -124,6 +125,11 @@ impl Contacts {
         &self.events
     }
 
+    /// The impacts so far, in order.
+    pub fn impacts(&self) -> &[Impact] {
+        &self.impacts
+    }
+
     /// The largest error of position of what is held so far [m or rad].
     pub fn largest_drift(&self) -> f64 {
         self.largest_drift
@@ -141,103 +147,6 @@ impl Contacts {
         t: f64,
     ) -> Result<(), Error> {
         self.settle(dynamics, state, forces, t).map(drop)
-    }
-
-    /// Begins at a state at time 0: points on the ground that do not move away are closed.
-    ///
-    /// # Errors
-    /// A point below the ground, with its name and depth, and constraints that the state does not keep, that contradict each other or that leave
-    /// no way to move.
-    pub fn start(
-        &mut self,
-        dynamics: &mut Dynamics,
-        state: &mut StateVec,
-        (tau, loads): (&[f64], &mut Loads),
-        keys: &Keys,
-        warnings: &mut Vec<Warning>,
-    ) -> Result<(), Error> {
-        self.events.clear();
-        self.closed.clear();
-        self.largest_drift = 0.0;
-        self.refresh();
-        self.measure(dynamics, state.view())?;
-        let mut row = 0;
-        for (name, constraint) in self.names.iter().zip(&self.permanent) {
-            for _ in 0..constraint.rows() {
-                let error = self.errors[row];
-                if error.is_nan() || error.abs() > START {
-                    let problem = format!("the initial state misses it by {error:.4} m or rad");
-                    let remedy = "choose `initial` so that all constraints are kept, or move the constraint";
-                    return Err(fault(keys, &format!("constraint `{name}` of the robot"), problem, remedy));
-                }
-                row += 1;
-            }
-        }
-        self.start_on_ground(dynamics, state, keys)?;
-        // Velocities that the constraints do not allow are taken out, as by an impact that nobody heard.
-        self.refresh();
-        if !self.constraints.is_empty() {
-            self.blow(dynamics, state, false)?;
-        }
-        let solved = self.settle(dynamics, state, (tau, loads), 0.0)?;
-        self.events.clear();
-        if solved.contradiction > 1e-6 * (1.0 + self.fastest()) {
-            let problem = format!(
-                "{} constrained directions depend on others and contradict them by {:.3e} m/s² or rad/s²",
-                solved.dependent, solved.contradiction
-            );
-            return Err(fault(keys, "constraints of the robot", problem, "take out what is held twice"));
-        }
-        if solved.dependent > 0.0 {
-            let message = format!(
-                "{} constrained directions depend on others: motion is as it must be, but how they share the load is a choice",
-                solved.dependent
-            );
-            let file = robot_file(keys);
-            warnings.push(Warning { file, element: "constraints of the robot".to_owned(), message });
-        }
-        Ok(())
-    }
-
-    fn fastest(&self) -> f64 {
-        self.motion[0].iter().fold(0.0, |m, a| a.abs().max(m))
-    }
-
-    fn start_on_ground(&mut self, dynamics: &mut Dynamics, state: &StateVec, keys: &Keys) -> Result<(), Error> {
-        let Some(ground) = self.ground else { return Ok(()) };
-        dynamics.placements(&state.q, &mut self.poses)?;
-        for (i, point) in self.points.iter_mut().enumerate() {
-            let at = point.place(&self.poses);
-            let gap = at.z - ground.height;
-            if gap < -START {
-                let problem = format!("contact `{}` is {:.4} m below the ground", point.name, -gap);
-                return Err(fault(keys, "initial", problem, "raise the robot, or lower `ground.height`"));
-            }
-            point.mode = Mode::Open;
-            point.armed = gap.min(0.0);
-            if gap <= ON_GROUND {
-                // What is farther below than numbers in files are rounded is drawn up.
-                point.close(if gap < -ON_GROUND { Vec3::new(at.x, at.y, ground.height) } else { at });
-                self.closed.push(i);
-            }
-        }
-        self.refresh();
-        self.measure(dynamics, state.view())?;
-        // What moves off is not held, and what slides is not stopped.
-        let rest = ground.resting_speed.max(SLOW);
-        for i in self.closed.clone() {
-            let velocity = self.along_ground(i);
-            let speed = velocity.norm();
-            if self.off_ground(i) > rest {
-                self.points[i].mode = Mode::Open;
-            } else if speed > rest {
-                self.points[i].slip(velocity.scale(1.0 / speed));
-                self.points[i].heed(velocity);
-            }
-        }
-        let points = &self.points;
-        self.closed.retain(|i| points[*i].mode != Mode::Open);
-        Ok(())
     }
 
     /// Row of a closed contact in what was measured last, and number of its rows.
@@ -345,84 +254,16 @@ impl Contacts {
             None => Vec3::zero(),
         }
     }
-
-    /// Heights of all contact points above the ground at a position [m].
-    ///
-    /// # Errors
-    /// A slice that does not fit the model.
-    pub fn gaps(&mut self, dynamics: &Dynamics, q: &[f64], out: &mut Vec<f64>) -> Result<(), Error> {
-        out.clear();
-        let Some(ground) = self.ground else { return Ok(()) };
-        dynamics.placements(q, &mut self.poses)?;
-        out.extend(self.points.iter().map(|p| p.place(&self.poses).z - ground.height));
-        Ok(())
-    }
-
-    /// What is logged: contacts, centre of mass, zero-moment point. Forces are those of the last call of [`Contacts::forward`], `couple` is what the
-    /// ground exerts besides [N m].
-    ///
-    /// # Errors
-    /// A slice that does not fit the model.
-    pub fn report(
-        &mut self,
-        dynamics: &Dynamics,
-        q: &[f64],
-        couple: Vec3<f64>,
-        out: &mut Footing,
-    ) -> Result<(), Error> {
-        dynamics.placements(q, &mut self.poses)?;
-        let (mut mass, mut moment) = (0.0, Vec3::zero());
-        let model = dynamics.model();
-        for (body, pose) in model.bodies().iter().zip(&self.poses) {
-            // The records are in frames of their own, the poses are those of link frames.
-            let inertia = body.inertia;
-            let link = body.frame.inverse().after(*pose);
-            mass += inertia.mass;
-            moment +=
-                link.point(inertia.first_moment.scale(1.0 / inertia.mass.max(f64::MIN_POSITIVE))).scale(inertia.mass);
-        }
-        out.center_of_mass = moment.scale(1.0 / mass).to_array();
-        out.contacts.resize(self.points.len(), Touch::default());
-        let height = self.ground.map_or(0.0, |ground| ground.height);
-        let (mut load, mut at) = (0.0, [-couple.y, couple.x]);
-        for i in 0..self.points.len() {
-            let (place, force) = (self.points[i].place(&self.poses), self.force(i));
-            out.contacts[i] =
-                Touch { force: force.to_array(), gap: place.z - height, mode: self.points[i].mode.number() };
-            load += force.z;
-            at[0] += place.x * force.z;
-            at[1] += place.y * force.z;
-        }
-        out.zero_moment_point = match load > 0.0 {
-            true => at.map(|moment| moment / load),
-            false => [out.center_of_mass[0], out.center_of_mass[1]],
-        };
-        out.drift = self.largest_drift;
-        Ok(())
-    }
-
-    /// Where a contact point is at a position [m].
-    ///
-    /// # Errors
-    /// A slice that does not fit the model.
-    pub fn place(&mut self, contact: usize, dynamics: &Dynamics, q: &[f64]) -> Result<Vec3<f64>, Error> {
-        dynamics.placements(q, &mut self.poses)?;
-        Ok(self.points[contact].place(&self.poses))
-    }
 }
 
 /// Whether there is a load that may be shared.
-fn may_share(solved: &Solved<f64>) -> bool {
+pub(crate) fn may_share(solved: &Solved<f64>) -> bool {
     solved.dependent > 0.0 && solved.contradiction < AT_ODDS
 }
 
 /// Whether it has been. Where points slip there may be no even share: a share that helps one of them may hinder another.
-fn is_shared(solved: &Solved<f64>) -> bool {
+pub(crate) fn is_shared(solved: &Solved<f64>) -> bool {
     solved.dependent == 0.0 && solved.independence > 0.1 * SHARED.damping
-}
-
-fn robot_file(keys: &Keys) -> String {
-    keys.locate("robot")
 }
 
 /// A run whose contacts change without end.

@@ -27,7 +27,7 @@ impl Mode {
 }
 
 /// Errors of contacts are drawn back this fast, critically damped [rad/s].
-const STABILISATION: f64 = 100.0;
+pub(crate) const STABILISATION: f64 = 100.0;
 /// Below this speed the direction in which a point slips is the one in which it began to [m/s].
 pub(super) const SLOW: f64 = 1e-6;
 

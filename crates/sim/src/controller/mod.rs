@@ -81,6 +81,12 @@ impl Control {
         keys: &Keys,
     ) -> Result<Self, Error> {
         let n = joints.len();
+        if !matches!(spec, Controller::None {} | Controller::Pd { .. } | Controller::ComputedTorque { .. }) {
+            robot.refuse_bending(
+                &format!("the controller `{}`", spec.name()),
+                "use `pd` or `computed_torque`, or take the link out of `flexible_links`",
+            )?;
+        }
         let (law, kp, kd) = match spec {
             Controller::None {} => (Law::None, vec![0.0; n], vec![0.0; n]),
             Controller::Pd { kp, kd, gravity_compensation, .. } => {
@@ -120,8 +126,7 @@ impl Control {
                 (Law::Walk(Box::new(Walking::new(walk, robot, keys)?)), vec![0.0; n], vec![0.0; n])
             }
         };
-        let root = if joints.floating { (7, 6) } else { (0, 0) };
-        let (nq, nv) = (root.0 + n, root.1 + n);
+        let (nq, nv) = (joints.nq(), joints.nv());
         Ok(Self {
             law,
             kp,
@@ -187,9 +192,12 @@ impl Control {
                     (self.reference[k], self.reference_rate[k], self.qdd[k]) = (point.q, point.qd, point.qdd);
                 }
                 let law = ComputedTorque { kp: &self.kp, kd: &self.kd };
-                let desired = Joints { q: &self.reference, qd: &self.reference_rate };
-                let now = Joints { q: &self.q, qd: state.thetad };
-                law.torque(&rigid.view(), desired, now, &mut self.qdd, scratch, &mut self.unused, tau)?;
+                // The law knows links that do not bend.
+                let n = self.joints.len();
+                let desired = Joints { q: &self.reference[..n], qd: &self.reference_rate[..n] };
+                let now = Joints { q: &self.q[..n], qd: &state.thetad[..n] };
+                let (qdd, unused) = (&mut self.qdd[..n], &mut self.unused[..n]);
+                law.torque(&rigid.view(), desired, now, qdd, scratch, unused, &mut tau[..n])?;
             }
             Law::TwoDegreeOfFreedom(feedforward) => {
                 feedforward.tick(at.references, at.t)?;
@@ -230,7 +238,8 @@ impl Control {
         Ok(Some(couple))
     }
 
-    /// Static motor positions and torques at the reference, into `theta` and `feed_forward`.
+    /// Static motor positions and torques at the reference, links that bend deflected as they hang there, into `theta` and
+    /// `feed_forward`.
     fn hold_reference(&mut self, dynamics: &mut Dynamics, reference: &[Point], state: State<f64>) -> Result<(), Error> {
         if self.joints.floating {
             self.q[..7].copy_from_slice(&state.q[..7]);
@@ -238,7 +247,12 @@ impl Control {
         for (joint, point) in self.joints.joints.iter().zip(reference) {
             self.q[joint.q] = point.q;
         }
-        self.equilibrium.solve(dynamics, &self.q, External::none(), &mut self.theta, &mut self.feed_forward)
+        let joints = self.q.len() - self.joints.modes.len();
+        self.q[joints..].fill(0.0);
+        dynamics.settle(&mut self.q, External::none())?;
+        self.equilibrium.solve(dynamics, &self.q, External::none(), &mut self.theta, &mut self.feed_forward)?;
+        self.feed_forward[self.joints.nv() - self.joints.modes.len()..].fill(0.0);
+        Ok(())
     }
 
     fn limit(&mut self, tau: &mut [f64]) {

@@ -3,11 +3,12 @@
 use super::Dynamics;
 use crate::error::{Error, ErrorKind};
 use gyroflex::dynamics::{
-    self, AbaScratch, Constrained, ConstrainedScratch, Constraint, ConstraintError, ConstraintMotion,
-    ConstraintScratch, External, Forward, Impact, JointSpaceScratch, PropagatedScratch, Regularisation, Solved, State,
-    SupportScratch,
+    self, AbaScratch, Acceleration, Constrained, ConstrainedScratch, Constraint, ConstraintError, ConstraintMotion,
+    ConstraintScratch, External, Forward, Hold, Impact, Inverse, JointSpaceScratch, PropagatedScratch, Regularisation,
+    Solved, State, SupportScratch, TorqueDistribution,
 };
 use gyroflex::model::Model;
+use gyroflex::spatial::{Force, Transform, Vec3};
 
 /// Scratch for the constraints seen last; it keeps nothing between calls but its size.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +18,8 @@ pub(super) struct ConstraintStorage {
     propagated: Vec<PropagatedScratch<f64>>,
     matrix: Vec<f64>,
     joint_matrix: Vec<f64>,
+    inverse_matrix: Vec<f64>,
+    poses: Vec<Transform<f64>>,
 }
 
 impl ConstraintStorage {
@@ -61,6 +64,7 @@ impl Dynamics {
         out: Forward<f64>,
         forces: Constrained<f64>,
     ) -> Result<Solved<f64>, Error> {
+        self.model.refuse_bending("what holds a robot beside its joints")?;
         let model = self.model.view();
         self.held.fit(&model, constraints);
         let scratch = self.held.lend(&mut self.aba, &mut self.joint_space);
@@ -78,6 +82,51 @@ impl Dynamics {
         Ok(solved?)
     }
 
+    /// Torques that make a motion with something held, and the forces of it; see [`dynamics::constrained_inverse_dynamics`].
+    ///
+    /// # Errors
+    /// A slice or a constraint that does not fit the model.
+    #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
+    pub fn constrained_inverse(
+        &mut self,
+        state: State<f64>,
+        accel: Acceleration<f64>,
+        ext: External<f64>,
+        constraints: &[Constraint<f64>],
+        distribution: TorqueDistribution<f64>,
+        regularisation: Regularisation<f64>,
+        out: Inverse<f64>,
+        forces: Constrained<f64>,
+    ) -> Result<Solved<f64>, Error> {
+        let model = self.model.view();
+        self.held.fit(&model, constraints);
+        let entries = dynamics::constrained_inverse_len(&model, constraints, distribution.passive.len());
+        self.held.inverse_matrix.resize(entries, 0.0);
+        self.held.poses.resize(model.bodies().len(), Transform::identity());
+        let Constrained { multipliers, wrenches } = forces;
+        let solved = dynamics::constrained_inverse_dynamics(
+            &model,
+            state,
+            accel,
+            ext,
+            constraints,
+            distribution,
+            regularisation,
+            &mut self.rnea,
+            &mut self.held.supports,
+            &mut self.held.inverse_matrix,
+            out,
+            multipliers,
+        )?;
+        dynamics::placements(&model, state.q, &mut self.held.poses)?;
+        let mut rest = &*multipliers;
+        for (constraint, wrench) in constraints.iter().zip(wrenches) {
+            let (own, others) = rest.split_at_checked(constraint.rows()).unwrap_or_default();
+            (*wrench, rest) = (wrench_of(constraint, own, &self.held.poses), others);
+        }
+        Ok(solved)
+    }
+
     /// Velocities after an impact, and the impulses of it; see [`dynamics::impact`].
     ///
     /// # Errors
@@ -91,6 +140,7 @@ impl Dynamics {
         out: Impact<f64>,
         forces: Constrained<f64>,
     ) -> Result<Solved<f64>, Error> {
+        self.model.refuse_bending("what holds a robot beside its joints")?;
         let model = self.model.view();
         self.held.fit(&model, constraints);
         let scratch = self.held.lend(&mut self.aba, &mut self.joint_space);
@@ -108,10 +158,24 @@ impl Dynamics {
         constraints: &[Constraint<f64>],
         out: ConstraintMotion<f64>,
     ) -> Result<(), Error> {
+        self.model.refuse_bending("what holds a robot beside its joints")?;
         let model = self.model.view();
         self.held.fit(&model, constraints);
         Ok(dynamics::constraint_motion(&model, q, qd, constraints, &mut self.held.supports, out)?)
     }
+}
+
+/// Wrench of a constraint on its link about the origin of its frame, in world axes: multipliers count along the axes of what the frame is held to.
+fn wrench_of(constraint: &Constraint<f64>, multipliers: &[f64], poses: &[Transform<f64>]) -> Force<f64> {
+    let Hold::Frame { anchor, directions, .. } = &constraint.hold else { return Force::zero() };
+    let pose = anchor.body.and_then(|b| poses.get(b)).map_or(anchor.placement, |pose| anchor.placement.after(*pose));
+    let (mut along, mut held) = ([0.0; 6], multipliers.iter());
+    for (k, force) in along.iter_mut().enumerate() {
+        *force = if directions.contains(k) { held.next().copied().unwrap_or_default() } else { 0.0 };
+    }
+    let [mx, my, mz, fx, fy, fz] = along;
+    let axes = pose.rotation();
+    Force { ang: axes * Vec3::new(mx, my, mz), lin: axes * Vec3::new(fx, fy, fz) }
 }
 
 impl From<ConstraintError> for Error {

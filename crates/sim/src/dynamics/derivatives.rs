@@ -18,6 +18,7 @@ impl Dynamics {
         value: Forward<f64>,
         out: ForwardDerivatives<f64>,
     ) -> Result<(), Error> {
+        self.model.refuse_bending("what differentiates by formulas")?;
         let (model, scratch, matrix) = (self.model.view(), &mut self.derivative, &mut self.derivative_matrix);
         Ok(dynamics::forward_derivatives(&model, state, tau, ext, scratch, matrix, value, out)?)
     }
@@ -34,6 +35,7 @@ impl Dynamics {
         ext: External<f64>,
         out: InverseDerivatives<f64>,
     ) -> Result<(), Error> {
+        self.model.refuse_bending("what differentiates by formulas")?;
         Ok(dynamics::inverse_derivatives(&self.model.view(), state, accel, ext, &mut self.derivative, out)?)
     }
 }

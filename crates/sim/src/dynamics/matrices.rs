@@ -13,6 +13,9 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn coriolis_matrices(&mut self, state: State<f64>, out: CoriolisMatrices<f64>) -> Result<(), Error> {
+        if self.bending.is_some() {
+            return self.flexible_coriolis(state, out);
+        }
         Ok(dynamics::coriolis_matrices(&self.model.view(), state, &mut self.derivative, out)?)
     }
 
@@ -21,6 +24,9 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn inertia_rates(&mut self, state: State<f64>, out: InertiaRates<f64>) -> Result<(), Error> {
+        if self.bending.is_some() {
+            return self.flexible_inertia_rates(state, out);
+        }
         Ok(dynamics::inertia_rates(&self.model.view(), state, &mut self.derivative, out)?)
     }
 
@@ -29,6 +35,9 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn bias(&mut self, state: State<f64>, out: Bias<f64>) -> Result<(), Error> {
+        if self.bending.is_some() {
+            return self.flexible_bias(state, out);
+        }
         Ok(dynamics::bias(&self.model.view(), state, &mut self.derivative, out)?)
     }
 
@@ -37,6 +46,9 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn gravity_torques(&mut self, q: &[f64], g: &mut [f64]) -> Result<(), Error> {
+        if self.bending.is_some() {
+            return self.flexible_gravity(q, g);
+        }
         Ok(dynamics::gravity_torques(&self.model.view(), q, &mut self.derivative, g)?)
     }
 
@@ -45,6 +57,7 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model.
     pub fn regressor(&mut self, state: State<f64>, accel: Acceleration<f64>, out: Regressor<f64>) -> Result<(), Error> {
+        self.model.refuse_bending("the regressor")?;
         Ok(dynamics::regressor(&self.model.view(), state, accel, &mut self.derivative, out)?)
     }
 
@@ -66,6 +79,7 @@ impl Dynamics {
         task: Task<f64>,
         out: OperationalSpace<f64>,
     ) -> Result<SingularValues<f64>, Error> {
+        self.model.refuse_bending("the dynamics of a frame")?;
         let model = self.model.view();
         self.operational.resize(dynamics::operational_len(&model, task.directions.len()), 0.0);
         Ok(dynamics::operational_space(&model, state, task, &mut self.derivative, &mut self.operational, out)?)

@@ -24,10 +24,36 @@ pub struct Query {
     pub tau: Option<Vec<f64>>,
     /// Generalised forces on the link side of the joints, like `tau` [N m or N].
     pub tau_ext: Option<Vec<f64>>,
+    /// Modal coordinates of links that bend, one entry per mode [m, in torsion rad]; `None` is zero.
+    pub eta: Option<Vec<f64>>,
+    /// Their rates; `None` is zero.
+    pub etad: Option<Vec<f64>>,
+    /// Their accelerations, for inverse dynamics; `None` leaves the modes free: their accelerations are computed.
+    pub etadd: Option<Vec<f64>>,
+    /// Generalised forces on the modes, for forward dynamics [N, in torsion N m]; `None` is zero.
+    pub tau_eta: Option<Vec<f64>>,
     /// Loads on links.
     pub wrenches: Vec<Wrench>,
     /// Acceleration of gravity in world axes [m/s²]; `None` is the robot's own.
     pub gravity: Option<[f64; 3]>,
+    /// Names of what holds the robot beside its joints: constraints, couplings, and contacts, which stick where they are. `None` is all constraints
+    /// and couplings of the robot's file.
+    pub held: Option<Vec<String>>,
+    /// How motors and what is held share the load of inverse dynamics.
+    pub distribution: Option<Distribution>,
+}
+
+/// Of all torques and forces that make a motion those are found whose weighted squares have the least sum.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Distribution {
+    /// Weights of the torques `tau_j`, above zero, `nv` entries, with a floating root also without its six; `None` is ones.
+    pub torques: Option<Vec<f64>>,
+    /// Weights of the forces, one per held direction, not negative; `None` is 1e-6.
+    pub multipliers: Option<Vec<f64>>,
+    /// Forces to stay near to, one per held direction [N or N m]; `None` is zeros.
+    pub wanted: Option<Vec<f64>>,
+    /// Names of joints that nothing drives; a floating root always is one.
+    pub passive: Vec<String>,
 }
 
 /// A load on a link.
@@ -55,7 +81,25 @@ pub enum WrenchAxes {
     Link,
 }
 
-const KEYS: [&str; 10] = ["q", "qd", "qdd", "theta", "thetad", "thetadd", "tau", "tau_ext", "wrenches", "gravity"];
+const KEYS: [&str; 16] = [
+    "q",
+    "qd",
+    "qdd",
+    "theta",
+    "thetad",
+    "thetadd",
+    "tau",
+    "tau_ext",
+    "eta",
+    "etad",
+    "etadd",
+    "tau_eta",
+    "wrenches",
+    "gravity",
+    "held",
+    "distribution",
+];
+const DISTRIBUTION_KEYS: [&str; 4] = ["torques", "multipliers", "wanted", "passive"];
 const WRENCH_KEYS: [&str; 5] = ["link", "force", "torque", "frame", "point"];
 
 impl Query {
@@ -78,6 +122,8 @@ impl Query {
             match key.as_str() {
                 "wrenches" => query.wrenches = wrenches(value)?,
                 "gravity" => query.gravity = Some(triple("gravity", value)?),
+                "held" => query.held = Some(names("held", value)?),
+                "distribution" => query.distribution = Some(distribution(value)?),
                 _ => match query.array(&key) {
                     Some(slot) => *slot = Some(numbers(&key, value)?),
                     None => return Err(unknown(&key, "", &KEYS)),
@@ -97,6 +143,10 @@ impl Query {
             "thetadd" => &mut self.thetadd,
             "tau" => &mut self.tau,
             "tau_ext" => &mut self.tau_ext,
+            "eta" => &mut self.eta,
+            "etad" => &mut self.etad,
+            "etadd" => &mut self.etadd,
+            "tau_eta" => &mut self.tau_eta,
             _ => return None,
         })
     }
@@ -159,6 +209,34 @@ fn text(key: &str, value: Json) -> Result<String, Error> {
         Json::Text(text) => Ok(text),
         other => Err(fault(key, format!("it is {}, but must be a text", other.kind()), "give a text in quotes")),
     }
+}
+
+fn names(key: &str, value: Json) -> Result<Vec<String>, Error> {
+    match value {
+        Json::List(list) => list.into_iter().enumerate().map(|(i, x)| text(&format!("{key}[{i}]"), x)).collect(),
+        other => {
+            Err(fault(key, format!("it is {}, but must be a list of names", other.kind()), "give a list of names"))
+        }
+    }
+}
+
+fn distribution(value: Json) -> Result<Distribution, Error> {
+    let Json::Map(entries) = value else {
+        let problem = format!("it is {}, but must be an object", value.kind());
+        return Err(fault("distribution", problem, "give an object such as {\"torques\": [1, 1, 4]}"));
+    };
+    let mut distribution = Distribution::default();
+    for (key, value) in entries {
+        let here = format!("distribution.{key}");
+        match key.as_str() {
+            "torques" => distribution.torques = Some(numbers(&here, value)?),
+            "multipliers" => distribution.multipliers = Some(numbers(&here, value)?),
+            "wanted" => distribution.wanted = Some(numbers(&here, value)?),
+            "passive" => distribution.passive = names(&here, value)?,
+            _ => return Err(unknown(&key, "distribution.", &DISTRIBUTION_KEYS)),
+        }
+    }
+    Ok(distribution)
 }
 
 fn wrenches(value: Json) -> Result<Vec<Wrench>, Error> {

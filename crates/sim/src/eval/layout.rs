@@ -22,6 +22,8 @@ pub(super) struct Layout {
     /// Gear ratio at each of these, 1 where there is no drive.
     ratios: Vec<f64>,
     has_elastic: bool,
+    /// Names of the modes of links that bend.
+    pub(super) modes: Vec<String>,
 }
 
 impl Layout {
@@ -35,11 +37,26 @@ impl Layout {
             }
         }
         let has_elastic = model.bodies().iter().any(|b| b.is_elastic());
-        Self { nq: model.nq(), floating: robot.is_floating(), joints, ratios, has_elastic }
+        let modes = robot.mode_names();
+        Self { nq: model.nq(), floating: robot.is_floating(), joints, ratios, has_elastic, modes }
     }
 
+    /// Number of velocity coordinates of the joints.
     pub(super) fn nv(&self) -> usize {
         self.joints.len()
+    }
+
+    /// Entries of a floating root, which lead.
+    pub(super) fn root(&self) -> usize {
+        if self.floating { ROOT } else { 0 }
+    }
+
+    /// The joint or the mode behind entry `k` of a vector over all coordinates, for an error message.
+    pub(super) fn owner(&self, k: usize) -> String {
+        match self.joints.get(k) {
+            Some(joint) => format!("joint `{joint}`"),
+            None => format!("mode `{}`", self.modes.get(k - self.joints.len()).map_or("", String::as_str)),
+        }
     }
 
     /// Whether any joint has a motor coordinate of its own.
@@ -107,6 +124,21 @@ impl Arrays<'_> {
         self.vector(key, given, false, "", true)
     }
 
+    /// A vector over the modes of links that bend; zeros where it is not given.
+    pub(super) fn modes(&self, key: &str, given: Option<&[f64]>) -> Result<Vec<f64>, Error> {
+        let names = &self.layout.modes;
+        let Some(given) = given else { return Ok(vec![0.0; names.len()]) };
+        finite(key, given)?;
+        if given.len() == names.len() {
+            return Ok(given.to_vec());
+        }
+        let remedy = match names.is_empty() {
+            true => format!("leave `{key}` out: no link of the robot bends"),
+            false => format!("give one entry per mode, in this order: {}", names.join(", ")),
+        };
+        Err(fault(key, format!("{} entries are given, but {} are expected", given.len(), names.len()), remedy))
+    }
+
     /// From reflected motions to the user's, from the user's torques to reflected ones.
     pub(super) fn times_ratio(&self, v: Vec<f64>) -> Vec<f64> {
         v.iter().enumerate().map(|(k, x)| x * self.ratio(k)).collect()
@@ -119,7 +151,7 @@ impl Arrays<'_> {
 
     /// Gear ratios, 1 for all where everything is on the link side.
     pub(super) fn ratio(&self, k: usize) -> f64 {
-        if self.motor_side { self.layout.ratios[k] } else { 1.0 }
+        if self.motor_side { self.layout.ratios.get(k).copied().unwrap_or(1.0) } else { 1.0 }
     }
 
     /// `or_joints_only`: whether the six entries of a floating root may be left out.

@@ -7,7 +7,8 @@ use crate::error::{Error, ErrorKind};
 use gyroflex::dynamics::{CoriolisMatrices, Energy, InertiaRates, State};
 use serde::Serialize;
 
-/// What was asked for; the rest is `None` and not printed. Vectors have `nv` entries, matrices `nv` rows of `nv`.
+/// What was asked for; the rest is `None` and not printed. Vectors have `nv` entries, matrices `nv` rows of `nv`; where links bend, the
+/// matrices and `g` go on with the modes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Answer {
     /// Joint accelerations.
@@ -22,6 +23,25 @@ pub struct Answer {
     /// Torque the motor must exert [N m or N].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tau: Option<Vec<f64>>,
+    /// Forces of what is held, where anything is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held: Option<Vec<HeldAnswer>>,
+    /// How many held directions depend on others, or cannot move at all: how those share the load is a choice.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dependent: Option<usize>,
+    /// The largest acceleration that those ask for and do not get: not small where what is held contradicts itself. Forward dynamics only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contradiction: Option<f64>,
+    /// The largest load at what nothing drives that nothing held bears either [N m or N]: not small where the motion is impossible. Inverse dynamics
+    /// with passive velocities only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unborne: Option<f64>,
+    /// Accelerations of the modes of links that bend.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub etadd: Option<Vec<f64>>,
+    /// Generalised forces that must act on the modes, where their accelerations are given [N, in torsion N m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tau_eta: Option<Vec<f64>>,
     /// `M(q)`: inertia matrix of the link side; in the rigid models that of the whole robot.
     #[serde(rename = "M", skip_serializing_if = "Option::is_none")]
     pub m: Option<Vec<Vec<f64>>>,
@@ -34,6 +54,12 @@ pub struct Answer {
     /// `g(q)`: generalised forces that hold the links against gravity [N m or N].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub g: Option<Vec<f64>>,
+    /// `K`: stiffness of the modes.
+    #[serde(rename = "K", skip_serializing_if = "Option::is_none")]
+    pub k: Option<Vec<Vec<f64>>>,
+    /// `D`: damping of the modes.
+    #[serde(rename = "D", skip_serializing_if = "Option::is_none")]
+    pub d: Option<Vec<Vec<f64>>>,
     /// `C, C1, C2, M_dot, S_dot`, where the velocities are given.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub velocity_matrices: Option<VelocityMatrices>,
@@ -43,6 +69,22 @@ pub struct Answer {
     /// Significance of the gyroscopic coupling.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub significance: Option<Significance>,
+}
+
+/// Forces of a constraint, a coupling or a contact.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HeldAnswer {
+    /// Its name.
+    pub name: String,
+    /// Force on its link in world axes [N]; absent for couplings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<[f64; 3]>,
+    /// Moment on its link about the origin of the held frame, in world axes [N m]; absent for couplings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moment: Option<[f64; 3]>,
+    /// Forces along its directions, out of rx, ry, rz, x, y, z in this order, in the axes of what it is held to; for a coupling that along
+    /// the joint that follows [N or N m].
+    pub multipliers: Vec<f64>,
 }
 
 /// What the matrices become in motion: blocks of the Coriolis matrix in Christoffel form, and rates.
@@ -89,7 +131,7 @@ pub struct EnergyAnswer {
     pub kinetic: f64,
     /// Of moving links and rotors in the field of gravity, zero for a mass at the world's origin.
     pub gravity: f64,
-    /// In the springs of the transmissions.
+    /// In the springs of the transmissions, and in links that bend.
     pub elastic: f64,
     /// The sum of the three.
     pub total: f64,
@@ -114,6 +156,12 @@ impl Answer {
 
     /// Nothing that is not a number leaves this house.
     pub(super) fn check_finite(&self, layout: &Layout) -> Result<(), Error> {
+        let mode = |k: usize| layout.owner(layout.nv() + k);
+        for (key, vector) in [("etadd", &self.etadd), ("tau_eta", &self.tau_eta)] {
+            if let Some(k) = vector.as_ref().and_then(|v| v.iter().position(|x| !x.is_finite())) {
+                return Err(not_finite(&mode(k), key));
+            }
+        }
         let vectors = [
             ("qdd", &self.qdd),
             ("thetadd", &self.thetadd),
@@ -123,8 +171,12 @@ impl Answer {
         ];
         for (key, vector) in vectors {
             if let Some(k) = vector.as_ref().and_then(|v| v.iter().position(|x| !x.is_finite())) {
-                return Err(not_finite(&format!("joint `{}`", layout.joints[k]), key));
+                return Err(not_finite(&layout.owner(k), key));
             }
+        }
+        let mut told = self.held.iter().flatten();
+        if let Some(wrong) = told.find(|held| held.multipliers.iter().any(|x| !x.is_finite())) {
+            return Err(not_finite(&format!("`{}`", wrong.name), "held"));
         }
         let moving = self.velocity_matrices.as_ref();
         let matrices = [
@@ -140,7 +192,7 @@ impl Answer {
         for (key, matrix) in matrices {
             let wrong = |row: &Vec<f64>| row.iter().any(|x| !x.is_finite());
             if let Some(k) = matrix.and_then(|m| m.iter().position(wrong)) {
-                return Err(not_finite(&format!("joint `{}`", layout.joints[k]), key));
+                return Err(not_finite(&layout.owner(k), key));
             }
         }
         match self.energy {
@@ -150,7 +202,7 @@ impl Answer {
     }
 }
 
-fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+pub(super) fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 

@@ -36,6 +36,7 @@ impl Precision {
 /// # Errors
 /// [`ErrorKind::Model`] if the robot is not physical, or a number of it is beyond the range of the precision.
 pub fn rust(robot: &Robot, fidelity: Fidelity, precision: Precision) -> Result<String, Error> {
+    robot.refuse_bending("exported code", crate::bending::RIGID)?;
     let model = robot.model(fidelity)?;
     match precision {
         Precision::Single => source::<f32>(robot, &model, precision),

@@ -2,9 +2,11 @@
 
 mod text;
 
+use crate::beam::Boundary;
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
 use crate::error::Error;
+use crate::flexible::Flexure;
 use crate::inverse::SmoothnessTable;
 use crate::modes::{Modes, modes};
 use crate::robot::Robot;
@@ -28,15 +30,18 @@ pub struct Info {
     pub moving_mass: f64,
     /// The joints in coordinate order, a floating root first.
     pub joints: Vec<JointInfo>,
+    /// Links that bend; their modes follow the joints in `q`, `qd` and all others.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub flexible_links: Vec<FlexibleLinkInfo>,
     /// Every link of the URDF.
     pub links: Vec<LinkInfo>,
     /// Every number of every joint, and where it came from.
     pub table: Vec<EntryInfo>,
-    /// Natural modes of the transmissions at the zero pose, unloaded, in the robot's own model; `None` without elastic joints
-    /// in that model, or where the inertia matrix has no inverse.
+    /// Natural modes of the transmissions and of links that bend at the zero pose, unloaded, in the robot's own model; `None` without
+    /// either, or where the inertia matrix has no inverse.
     pub modes: Option<Modes>,
     /// How many derivatives of the joints' positions the inverse of the elastic models needs; `None` if no joint is elastic: accelerations
-    /// are enough then.
+    /// are enough then; nor where links bend.
     pub smoothness: Option<SmoothnessTable>,
     /// What was ignored or assumed.
     pub warnings: Vec<String>,
@@ -134,6 +139,55 @@ pub struct TransmissionInfo {
     pub error_amplitude: f64,
 }
 
+/// A link that bends.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FlexibleLinkInfo {
+    /// Its name.
+    pub link: String,
+    /// Length of its beam [m].
+    pub length: f64,
+    /// Whether a bent beam is shorter than a straight one.
+    pub geometric_stiffening: bool,
+    /// Its modes, in the order of the modal coordinates.
+    pub modes: Vec<ModeInfo>,
+}
+
+/// An assumed mode on its own.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModeInfo {
+    /// Its name.
+    pub name: String,
+    /// Whose eigenfunction it is; `None` for a shape from a table.
+    pub boundary: Option<&'static str>,
+    /// Stiffness `K_jj` [N/m, in torsion N m/rad].
+    pub stiffness: f64,
+    /// Modal mass, with what its boundary has at the tip [kg, in torsion kg m²].
+    pub mass: f64,
+    /// Natural frequency of the two [Hz].
+    pub frequency: f64,
+    /// Damping ratio [–].
+    pub damping_ratio: f64,
+}
+
+impl FlexibleLinkInfo {
+    fn of(link: &Flexure) -> Self {
+        let modes = link.modes.iter().map(|mode| ModeInfo {
+            name: mode.name.clone(),
+            boundary: mode.boundary.map(Boundary::name),
+            stiffness: mode.figures.stiffness,
+            mass: mode.figures.total_mass,
+            frequency: mode.figures.frequency,
+            damping_ratio: mode.figures.damping_ratio,
+        });
+        Self {
+            link: link.name.clone(),
+            length: link.beam.length,
+            geometric_stiffening: link.beam.stiffening,
+            modes: modes.collect(),
+        }
+    }
+}
+
 /// One link of the URDF: a frame of a moving body or of the world.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LinkInfo {
@@ -186,10 +240,11 @@ impl Info {
             name: robot.name.clone(),
             model: robot.fidelity.name(),
             gravity: robot.gravity.to_array(),
-            nq: view.nq(),
-            nv: view.nv(),
+            nq: model.nq(),
+            nv: model.nv(),
             moving_mass: robot.bodies.iter().map(|b| b.inertia.mass + moving_rotor_mass(b)).sum(),
             joints: joints.collect(),
+            flexible_links: robot.flexible.links.iter().map(FlexibleLinkInfo::of).collect(),
             links: robot.links.iter().map(|l| link(robot, l)).collect(),
             table: robot.table.iter().map(entry).collect(),
             modes: modes_at_zero(robot)?,
@@ -209,7 +264,7 @@ impl Info {
 
 fn modes_at_zero(robot: &Robot) -> Result<Option<Modes>, Error> {
     let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
-    if !dynamics.model().bodies().iter().any(|b| b.is_elastic()) {
+    if dynamics.modes() == 0 && !dynamics.model().bodies().iter().any(|b| b.is_elastic()) {
         return Ok(None);
     }
     let mut q = vec![0.0; dynamics.nq()];
@@ -224,7 +279,7 @@ fn modes_at_zero(robot: &Robot) -> Result<Option<Modes>, Error> {
 fn smoothness(robot: &Robot) -> Result<Option<SmoothnessTable>, Error> {
     let mut drives = robot.bodies.iter().filter_map(|b| b.drive.as_ref());
     let elastic = drives.any(|d| matches!(d.transmission, TransmissionSpec::Elastic { .. }));
-    elastic.then(|| SmoothnessTable::of(robot)).transpose()
+    (elastic && robot.flexible.is_empty()).then(|| SmoothnessTable::of(robot)).transpose()
 }
 
 fn moving_rotor_mass(body: &BodySpec) -> f64 {

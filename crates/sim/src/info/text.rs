@@ -31,14 +31,25 @@ impl fmt::Display for Info {
             "mass [kg]",
         ];
         table(f, &head, self.joints.iter().filter_map(|j| Some(drive(&j.name, j.drive.as_ref()?))))?;
+        if !self.flexible_links.is_empty() {
+            writeln!(f, "\nLinks that bend: assumed modes, after the joints in coordinate order")?;
+            let head = ["mode", "boundary", "K [N/m]", "mass [kg]", "frequency [Hz]", "damping ratio"];
+            let rows = self.flexible_links.iter().flat_map(|l| &l.modes).map(|m| {
+                let [k, mass, frequency, ratio] = [m.stiffness, m.mass, m.frequency, m.damping_ratio].map(digits);
+                vec![m.name.clone(), m.boundary.unwrap_or("table").to_owned(), k, mass, frequency, ratio]
+            });
+            table(f, &head, rows)?;
+        }
         if let Some(modes) = &self.modes {
-            writeln!(f, "\nModes of the transmissions at the zero pose, the fastest first")?;
+            let of = if self.flexible_links.is_empty() { "transmissions" } else { "transmissions and links" };
+            writeln!(f, "\nModes of the {of} at the zero pose, the fastest first")?;
             table(f, &["frequency [Hz]", "moves most"], modes.modes.iter().rev().map(mode))?;
         }
         writeln!(f, "\nDerivatives of q(t) that the inverse of a model needs")?;
         match &self.smoothness {
             Some(needed) => smoothness(f, needed)?,
-            None => writeln!(f, "  accelerations are enough: no joint is elastic")?,
+            None if self.flexible_links.is_empty() => writeln!(f, "  accelerations are enough: no joint is elastic")?,
+            None => writeln!(f, "  accelerations are enough: the links' modes are integrated along the motion")?,
         }
         writeln!(f, "\nFrames")?;
         let frames = self.links.iter().map(|l| {
@@ -66,7 +77,7 @@ fn joint(j: &JointInfo) -> Vec<String> {
 }
 
 fn mode(m: &Mode) -> Vec<String> {
-    vec![digits(m.frequency), format!("{} of {}", if m.on_motor { "motor" } else { "link" }, m.joint)]
+    vec![digits(m.frequency), m.moves_most()]
 }
 
 fn smoothness(f: &mut fmt::Formatter<'_>, needed: &SmoothnessTable) -> fmt::Result {

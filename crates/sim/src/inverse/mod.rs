@@ -31,12 +31,14 @@
 //! ```
 
 mod along;
+mod bending;
 mod motor_output;
 mod output;
 mod run;
 mod smoothness;
 
 pub use along::ReferenceInverse;
+pub use bending::BendingInverse;
 pub use motor_output::MotorOutput;
 pub use output::OutputInverse;
 pub use run::{InverseRun, InverseSummary, JointInverse};
@@ -75,6 +77,7 @@ impl InverseModel {
     /// # Errors
     /// Names the joint that is not physical in this model; a robot that needs more derivatives than can be carried.
     pub fn new(robot: &Robot, fidelity: Fidelity, torque_derivatives: usize) -> Result<Self, Error> {
+        robot.refuse_bending("the inverse of elastic joints", crate::zeros::ELASTIC_AND_BENDING)?;
         let model = robot.model(fidelity)?;
         let orders = orders(&model, torque_derivatives, VANISHING)?;
         let smoothness = Smoothness { joints: &orders, torque_derivatives };

@@ -1,7 +1,7 @@
 //! An inverse along references, of whichever output is prescribed.
 
 use super::motor_output::DERIVATIVES;
-use super::{InverseModel, MotorOutput, ReferenceInverse};
+use super::{BendingInverse, InverseModel, MotorOutput, ReferenceInverse};
 use crate::coordinates::Coordinates;
 use crate::error::Error;
 use crate::load::yaml::Keys;
@@ -17,6 +17,8 @@ pub enum OutputInverse {
     Link(Box<ReferenceInverse>),
     /// The motors do.
     Motor(Box<MotorOutput>),
+    /// The joints do, behind rigid gears, and the links bend.
+    Bending(Box<BendingInverse>),
 }
 
 impl OutputInverse {
@@ -31,6 +33,9 @@ impl OutputInverse {
         (joints, references): (&Coordinates, &References),
         keys: &Keys,
     ) -> Result<Self, Error> {
+        if !robot.flexible.is_empty() {
+            return Ok(Self::Bending(Box::new(BendingInverse::new(robot, fidelity, joints, references, keys)?)));
+        }
         Ok(match output {
             InverseOutput::Link => {
                 let inverse = InverseModel::new(robot, fidelity, 0)?;
@@ -46,7 +51,7 @@ impl OutputInverse {
     pub fn needed(&self, body: usize) -> u8 {
         match self {
             Self::Link(along) => along.inverse().smoothness().joints[body].position,
-            Self::Motor(_) => DERIVATIVES,
+            Self::Motor(_) | Self::Bending(_) => DERIVATIVES,
         }
     }
 
@@ -58,6 +63,7 @@ impl OutputInverse {
         match self {
             Self::Link(along) => along.start(references),
             Self::Motor(along) => along.start(references),
+            Self::Bending(along) => along.start(references),
         }
     }
 
@@ -69,6 +75,7 @@ impl OutputInverse {
         match self {
             Self::Link(along) => along.at(references, t, step),
             Self::Motor(along) => along.at(references, t),
+            Self::Bending(along) => along.at(references, t),
         }
     }
 
@@ -84,6 +91,7 @@ impl OutputInverse {
         match self {
             Self::Link(along) => along.invert(step),
             Self::Motor(along) => along.at(references, t),
+            Self::Bending(along) => along.at(references, t),
         }
     }
 
@@ -98,6 +106,7 @@ impl OutputInverse {
                 Ok(())
             }
             Self::Motor(along) => along.advance(references, t, step),
+            Self::Bending(along) => along.advance(references, t, step),
         }
     }
 
@@ -106,6 +115,7 @@ impl OutputInverse {
         match self {
             Self::Link(along) => along.q(),
             Self::Motor(along) => along.q(),
+            Self::Bending(along) => along.q(),
         }
     }
 
@@ -114,6 +124,7 @@ impl OutputInverse {
         match self {
             Self::Link(along) => along.derivative(1),
             Self::Motor(along) => along.qd(),
+            Self::Bending(along) => along.qd(),
         }
     }
 
@@ -122,6 +133,7 @@ impl OutputInverse {
         match self {
             Self::Link(along) => along.inverse().theta(0),
             Self::Motor(along) => along.theta(),
+            Self::Bending(along) => along.q(),
         }
     }
 
@@ -130,6 +142,7 @@ impl OutputInverse {
         match self {
             Self::Link(along) => along.inverse().theta(1),
             Self::Motor(along) => along.thetad(),
+            Self::Bending(along) => along.qd(),
         }
     }
 
@@ -138,6 +151,7 @@ impl OutputInverse {
         match self {
             Self::Link(along) => along.inverse().tau(0),
             Self::Motor(along) => along.tau(),
+            Self::Bending(along) => along.tau(),
         }
     }
 }

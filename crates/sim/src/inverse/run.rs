@@ -23,6 +23,9 @@ const POSES: usize = 32;
 /// The longest step of the deflections of damped transmissions [s].
 const LONGEST_STEP: f64 = 1e-4;
 
+/// The longest step of links that swing, in radians of the fastest swing.
+const RADIANS_A_STEP: f64 = 0.2;
+
 /// An inverse along a scenario's reference, ready to run.
 #[derive(Clone, Debug)]
 pub struct InverseRun {
@@ -169,7 +172,10 @@ impl InverseRun {
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<InverseSummary, Error> {
         let rate = self.file.scenario.log.rate;
-        let steps = (1.0 / rate / LONGEST_STEP).ceil().max(1.0);
+        // Links that bend swing by themselves, which takes steps short against a radian of the fastest swing.
+        let swing = self.stability.fastest.as_ref().filter(|_| self.stability.bends).map(|at| at.zero.size());
+        let longest = swing.map_or(LONGEST_STEP, |size| LONGEST_STEP.min(RADIANS_A_STEP / size));
+        let steps = (1.0 / rate / longest).ceil().max(1.0);
         let step = 1.0 / rate / steps;
         let mut loads = Loads::new(&[], &self.robot, &self.file.keys)?;
         let mut points = vec![Point::default(); self.joints.len()];
@@ -251,6 +257,13 @@ impl InverseRun {
 /// What the user should know of internal dynamics that do not fade. A transmission without damping is no such case: where the links are given, its
 /// inverse has no state.
 fn warning(stability: &InverseStability, file: &str) -> Option<Warning> {
+    if stability.bends && stability.verdict != Verdict::Stable {
+        return Some(Warning {
+            file: file.to_owned(),
+            element: "flexible_links".to_owned(),
+            message: format!("{}; give the links damping", stability.reason),
+        });
+    }
     let (motion, remedy) = match (stability.output, stability.verdict) {
         (_, Verdict::Stable) | (InverseOutput::Link, Verdict::Undamped) => return None,
         (InverseOutput::Link, Verdict::Unstable) => ("grow", "prescribe the motors (`--prescribe motor`)"),

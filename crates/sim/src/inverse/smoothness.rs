@@ -42,6 +42,7 @@ pub struct SmoothnessTable {
 /// # Errors
 /// Names the joint that is not physical in this model.
 pub fn joint_orders(robot: &Robot, fidelity: Fidelity, torque_derivatives: usize) -> Result<Vec<JointOrders>, Error> {
+    robot.refuse_bending("the inverse of elastic joints", crate::zeros::ELASTIC_AND_BENDING)?;
     orders(&robot.model(fidelity)?, torque_derivatives, VANISHING)
 }
 

@@ -12,8 +12,10 @@ const ROOT: [[&str; 6]; 2] = [["rx", "ry", "rz", "x", "y", "z"], ["wx", "wy", "w
 /// The order of states and inputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// Name of the joint of every velocity coordinate.
+    /// Name of the joint, or the mode of a link, of every velocity coordinate.
     joints: Vec<String>,
+    /// How many of these are modes, the last ones.
+    modes: usize,
     floating: bool,
     elastic: Vec<usize>,
     inputs: Vec<usize>,
@@ -25,18 +27,25 @@ impl Layout {
         for (joint, body) in robot.joints.iter().zip(model.bodies()) {
             joints.extend(std::iter::repeat_n(joint.name.clone(), body.joint.nv()));
         }
+        let modes = robot.mode_names();
         let bodies = || model.bodies().iter();
         Self {
-            joints,
+            modes: modes.len(),
+            joints: joints.into_iter().chain(modes).collect(),
             floating: robot.is_floating(),
             elastic: bodies().filter(|b| b.is_elastic()).map(|b| b.v_index()).collect(),
             inputs: bodies().filter(|b| is_joint(b.joint)).map(|b| b.v_index()).collect(),
         }
     }
 
-    /// Number of velocity coordinates of the links.
+    /// Number of velocity coordinates of joints and modes.
     pub fn nv(&self) -> usize {
         self.joints.len()
+    }
+
+    /// Number of modes of links that bend: the last velocity coordinates.
+    pub fn modes(&self) -> usize {
+        self.modes
     }
 
     /// Whether a floating root leads.
@@ -84,7 +93,7 @@ impl Layout {
         })
     }
 
-    /// Name of the joint of a velocity coordinate.
+    /// Name of the joint or the mode of a velocity coordinate.
     pub fn joint(&self, k: usize) -> &str {
         &self.joints[k]
     }
@@ -92,8 +101,10 @@ impl Layout {
     /// Names of the states.
     pub fn state_names(&self) -> Vec<String> {
         let mut names = Vec::with_capacity(2 * self.positions());
-        for (side, [link, motor]) in [["q", "theta"], ["qd", "thetad"]].into_iter().enumerate() {
+        let first_mode = self.nv() - self.modes;
+        for (side, [link, mode, motor]) in [["q", "eta", "theta"], ["qd", "etad", "thetad"]].into_iter().enumerate() {
             for (k, joint) in self.joints.iter().enumerate() {
+                let link = if k < first_mode { link } else { mode };
                 match ROOT[side].get(k).filter(|_| self.floating) {
                     Some(entry) => names.push(format!("{link}.{joint}.{entry}")),
                     None => names.push(format!("{link}.{joint}")),

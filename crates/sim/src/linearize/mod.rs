@@ -1,7 +1,8 @@
 //! Linear models of a robot about an operating point, their modes and their frequency response.
 //!
-//! State `x = (q, θ, q̇, θ̇)`: link positions as small motions (`nv` entries, a floating root's as a twist in its own frame,
-//! angular part first), reflected positions of the motors behind elastic transmissions, and the velocities of both. Input `u`: the
+//! State `x = (q, η, θ, q̇, η̇, θ̇)`: link positions as small motions (`nv` entries, a floating root's as a twist in its own frame,
+//! angular part first), modal coordinates of links that bend, reflected positions of the motors behind elastic transmissions, and the
+//! velocities of all. Input `u`: the
 //! reflected motor torques of the joints; a floating root has no motors. Both are deviations from the operating point:
 //!
 //! ```text

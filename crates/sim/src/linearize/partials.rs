@@ -1,6 +1,6 @@
 //! How the accelerations, and the torques through the transmissions, change with state and torque.
 
-use crate::dynamics::Dynamics;
+use crate::dynamics::{Direction, Dynamics};
 use crate::error::Error;
 use crate::simulate::StateVec;
 use gyroflex::dynamics::{
@@ -47,10 +47,14 @@ pub struct Partials {
 /// Derivatives of forward dynamics at a state and motor torques `tau` (`nv` entries).
 ///
 /// Those of `τ_J` follow from inverse dynamics `τ_J(q, q̇, q̈, θ̇, θ̈)`, since both accelerations are functions of state and torque.
+/// Where links bend, forward dynamics runs on numbers that carry their derivative, once per column.
 ///
 /// # Errors
 /// A slice that does not fit the model.
 pub fn partials(dynamics: &Dynamics, state: &StateVec, tau: &[f64]) -> Result<Partials, Error> {
+    if dynamics.modes() > 0 {
+        return by_columns(&mut dynamics.clone(), state, tau);
+    }
     let model = dynamics.model();
     let nv = model.nv();
     let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![0.0; nv]);
@@ -80,4 +84,22 @@ pub fn partials(dynamics: &Dynamics, state: &StateVec, tau: &[f64]) -> Result<Pa
         thetadd: Derivatives::split(&d_thetadd),
         tau_j: Derivatives::split(&d_tau_j),
     })
+}
+
+fn by_columns(dynamics: &mut Dynamics, state: &StateVec, tau: &[f64]) -> Result<Partials, Error> {
+    let nv = dynamics.nv();
+    let mut all = [(); 3].map(|()| DMatrix::zeros(nv, 5 * nv));
+    let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![0.0; nv]);
+    let blocks = [Direction::Q, Direction::Qd, Direction::Theta, Direction::Thetad, Direction::Tau];
+    for (block, direction) in blocks.into_iter().enumerate() {
+        for k in 0..nv {
+            let out = [qdd.as_mut_slice(), thetadd.as_mut_slice(), tau_j.as_mut_slice()];
+            dynamics.forward_slope(state.view(), tau, direction(k), out)?;
+            for (matrix, column) in all.iter_mut().zip([&qdd, &thetadd, &tau_j]) {
+                matrix.column_mut(block * nv + k).copy_from_slice(column);
+            }
+        }
+    }
+    let [qdd, thetadd, tau_j] = all.map(|matrix| Derivatives::split(&matrix));
+    Ok(Partials { qdd, thetadd, tau_j })
 }

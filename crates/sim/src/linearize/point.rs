@@ -27,12 +27,21 @@ impl OperatingPoint {
 }
 
 impl Linearizer {
-    /// Equilibrium at the positions `q` (`nq` entries).
+    /// Equilibrium at the positions `q` (`nq` entries). Where links bend, the modes may be left out: the links are then deflected as they
+    /// hang at rest. Modes that are given are held where they are.
     ///
     /// # Errors
     /// Positions that do not fit the robot.
     pub fn equilibrium_at(&mut self, q: &[f64]) -> Result<OperatingPoint, Error> {
-        let q = self.checked_positions(q)?;
+        let modes = self.layout.modes();
+        let q = match q.len() + modes == self.dynamics.nq() && modes > 0 {
+            true => {
+                let mut q = self.checked_positions(&[q, &vec![0.0; modes]].concat())?;
+                self.dynamics.settle(&mut q, External::none())?;
+                q
+            }
+            false => self.checked_positions(q)?,
+        };
         let nv = self.layout.nv();
         let mut state = StateVec { q, ..StateVec::zeros(0, nv) };
         let mut tau = vec![0.0; nv];
@@ -52,9 +61,9 @@ impl Linearizer {
         Ok(OperatingPoint { state: StateVec { q, ..state }, tau, time: None })
     }
 
-    /// The zero position: joints at zero, a floating root at the world's origin.
+    /// The zero position: joints at zero, a floating root at the world's origin; without the modes of links that bend.
     pub fn zero_position(&self) -> Vec<f64> {
-        let mut q = vec![0.0; self.dynamics.nq()];
+        let mut q = vec![0.0; self.dynamics.nq() - self.layout.modes()];
         if self.layout.floating() {
             q[6] = 1.0;
         }

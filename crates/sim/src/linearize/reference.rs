@@ -17,7 +17,8 @@ const DT: f64 = 1e-4;
 
 /// A robot on the reference motion of a scenario.
 ///
-/// Its motors are where the transmissions need them: `θ = q + e + k⁻¹(τ_J)`, with the `τ_J` that moves the links, rotors taken to
+/// Links that bend are deflected as the motion asks for at that instant, without swings of their own. Motors are where the transmissions need
+/// them: `θ = q + e + k⁻¹(τ_J)`, with the `τ_J` that moves the links, rotors taken to
 /// turn with the joints. What that leaves out, the torque of the dampers and of the deflections' own accelerations, is small
 /// against the deflection itself, and what it moves in `A` and `B` smaller still.
 #[derive(Clone, Debug)]
@@ -97,13 +98,19 @@ impl ReferenceMotion {
         let [before, now, after] = [self.instant(t - DT)?, self.instant(t)?, self.instant(t + DT)?];
         let nv = now.qd.len();
         let (mut thetad, mut thetadd) = (now.qd.clone(), now.qdd.clone());
+        let (mut qd, mut qdd) = (now.qd.clone(), now.qdd.clone());
+        for k in nv - self.linearizer.layout.modes()..nv {
+            qd[k] = (after.q[k] - before.q[k]) / (2.0 * DT);
+            qdd[k] = (after.q[k] - 2.0 * now.q[k] + before.q[k]) / (DT * DT);
+            (thetad[k], thetadd[k]) = (qd[k], qdd[k]);
+        }
         for &k in self.linearizer.layout.elastic() {
             thetad[k] = (after.theta[k] - before.theta[k]) / (2.0 * DT);
             thetadd[k] = (after.theta[k] - 2.0 * now.theta[k] + before.theta[k]) / (DT * DT);
         }
-        let state = StateVec { q: now.q, qd: now.qd, theta: now.theta, thetad };
+        let state = StateVec { q: now.q, qd, theta: now.theta, thetad };
         let (mut tau_j, mut tau) = (vec![0.0; nv], vec![0.0; nv]);
-        let accel = Acceleration { qdd: &now.qdd, thetadd: &thetadd };
+        let accel = Acceleration { qdd: &qdd, thetadd: &thetadd };
         let out = Inverse { tau_j: &mut tau_j, tau: &mut tau };
         self.linearizer.dynamics.inverse(state.view(), accel, External::none(), out)?;
         Ok(OperatingPoint { time: Some(t), ..self.linearizer.point(state, tau)? })
@@ -117,6 +124,7 @@ impl ReferenceMotion {
             let point = self.references.point(i, t);
             (q[joint.q], qd[joint.v], qdd[joint.v]) = (point.q, point.qd, point.qdd);
         }
+        self.linearizer.dynamics.settle_in_motion(&mut q, &qd, &qdd, External::none())?;
         let (mut tau_j, mut tau) = (zeros(), zeros());
         let state = StateVec { theta: q.clone(), thetad: qd.clone(), q, qd };
         let accel = Acceleration { qdd: &qdd, thetadd: &qdd };

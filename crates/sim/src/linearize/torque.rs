@@ -24,6 +24,10 @@ impl Linearizer {
     /// # Errors
     /// Vectors that do not fit, a floating root, or torques at which no equilibrium was found.
     pub fn equilibrium_for(&mut self, tau: &[f64], start: &[f64]) -> Result<OperatingPoint, Error> {
+        self.robot.refuse_bending(
+            "the search for the pose at which given torques hold the robot",
+            "give the pose itself with q: the deflections there are found",
+        )?;
         check("tau", tau, self.layout.nv())?;
         if self.layout.floating() {
             return Err(refused(

@@ -92,6 +92,8 @@ fn options() -> Options {
         },
         alias_limits: serde_saphyr::alias_limits! { max_total_replayed_events: 100_000, max_replay_stack_depth: 16 },
         non_finite_float_policy: NonFiniteFloatPolicy::Reject,
+        // As YAML 1.2 has it: `y` is a direction, and not `true`.
+        strict_booleans: true,
         with_snippet: false,
     }
 }

@@ -8,6 +8,8 @@
 //! | floating root, in the world; twist in its own frame | `base.x y z qx qy qz qw`, `base.wx wy wz vx vy vz` |
 //! | each contact point, where there is ground | `contact.<point>.fx fy fz gap mode` |
 //! | whole robot, where something holds it | `center_of_mass.x y z`, `zero_moment_point.x y`, `constraint_drift` |
+//! | each mode of a link that bends, grouped by quantity | `eta.<mode>`, `etad.<mode>`, `etadd.<mode>` |
+//! | tip of each link that bends beside the link at rest, link axes | `tip.<link>.x y z rx ry rz` |
 //! | pose of each link in its parent link | `frame.<link>.x y z qx qy qz qw` |
 
 use super::quaternion::quaternion;
@@ -70,6 +72,15 @@ pub(super) const PER_JOINT: &[PerJoint] = per_joint![
     tracking_error POSITION,
 ];
 
+pub(super) const PER_MODE: &[PerJoint] = per_joint![
+    eta ["rad", "m"],
+    etad VELOCITY,
+    etadd ACCELERATION,
+];
+
+/// Deflection of a tip beside the link at rest, in the link's axes.
+const TIP: [(&str, &str); 6] = [("x", "m"), ("y", "m"), ("z", "m"), ("rx", "rad"), ("ry", "rad"), ("rz", "rad")];
+
 pub(super) const WHOLE: &[Whole] = whole![
     kinetic_energy "J",
     gravity_energy "J",
@@ -121,6 +132,16 @@ pub fn columns(info: &RunInfo) -> Vec<Column> {
             push(key.to_owned(), unit);
         }
     }
+    for quantity in PER_MODE {
+        for (mode, &turns) in info.modes.iter().zip(&info.turning) {
+            push(format!("{}.{mode}", quantity.key), quantity.units[usize::from(!turns)]);
+        }
+    }
+    for link in &info.tips {
+        for (key, unit) in TIP {
+            push(format!("tip.{link}.{key}"), unit);
+        }
+    }
     for (link, _) in &info.frames {
         for (key, unit) in POSE {
             push(format!("frame.{link}.{key}"), unit);
@@ -139,6 +160,10 @@ pub(super) fn row(sample: &Sample, row: &mut Vec<f64>) {
     row.extend(sample.base_pose.into_iter().flatten());
     row.extend(sample.base_twist.into_iter().flatten());
     row.extend(sample.footing.iter().flat_map(|footing| footing.numbers()));
+    for quantity in PER_MODE {
+        row.extend_from_slice((quantity.get)(sample));
+    }
+    row.extend(sample.tips.iter().flat_map(|tip| tip.displacement.into_iter().chain(tip.rotation)));
     for frame in &sample.frames {
         row.extend([frame.pos.x, frame.pos.y, frame.pos.z]);
         row.extend(quaternion(frame.rotation()));

@@ -24,6 +24,12 @@ pub struct RunInfo {
     pub held: bool,
     /// Names of the points that the ground may hold.
     pub contacts: Vec<String>,
+    /// Names of the modes of links that bend.
+    pub modes: Vec<String>,
+    /// For each of these whether its coordinate is an angle: its numbers are then in rad instead of m.
+    pub turning: Vec<bool>,
+    /// Names of the links that bend, whose tips are recorded.
+    pub tips: Vec<String>,
     /// The robot's URDF, for `/robot_description`.
     pub urdf: String,
     /// Files to attach: name and content.
@@ -50,6 +56,9 @@ impl RunInfo {
             let parent = link.parent.clone().unwrap_or_else(|| Self::WORLD.to_owned());
             info.frames.push((link.name.clone(), parent));
         }
+        info.modes = robot.mode_names();
+        info.turning = robot.flexible.turning();
+        info.tips = robot.flexible.links.iter().map(|l| l.name.clone()).collect();
         info.urdf = robot.sources.first().map(|s| s.text.clone()).unwrap_or_default();
         info.attachments = robot.sources.iter().map(|s| (s.name.clone(), s.text.clone())).collect();
         info

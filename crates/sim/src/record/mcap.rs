@@ -7,6 +7,7 @@
 //! | `/motor_states` | cdr | `sensor_msgs/msg/JointState` | `N θ`, `N θ̇`, `τ/N`: the motor's own numbers; joints with a drive |
 //! | `/robot_description` | cdr | `std_msgs/msg/String` | the URDF, once |
 //! | `/gyroflex/state` | protobuf | `gyroflex.State` | all else; units are comments of the schema in the log |
+//! | `/gyroflex/impacts` | protobuf | `gyroflex.Impact` | every impact with the ground when it happens; robots with contacts |
 //!
 //! The robot's and the scenario's files are attachments, the parameters of the run a metadata record named `gyroflex`.
 //! Log and publish time are simulated time [ns].
@@ -16,10 +17,10 @@
 //! metadata, schemas and description go first and are on their way to the disk before the first sample. Finishing, or
 //! dropping the recorder, closes the open chunk and writes the index.
 
-use super::proto::{Described, FrameTransform, FrameTransforms, Quaternion, State, Timestamp, Vector3};
+use super::proto::{self, Described, FrameTransform, FrameTransforms, Quaternion, State, Timestamp, Vector3};
 use super::quaternion::quaternion;
 use super::ros::{self, JointRow, Stamp};
-use super::{Recorder, RunInfo, Sample, file};
+use super::{Impact, Recorder, RunInfo, Sample, file};
 use crate::error::Error;
 use ::mcap::records::{MessageHeader, Metadata};
 use ::mcap::write::NoSeek;
@@ -74,6 +75,8 @@ struct Channels {
     motor_states: Option<u16>,
     description: u16,
     state: u16,
+    /// Absent where no point may touch the ground.
+    impacts: Option<u16>,
 }
 
 impl McapRecorder {
@@ -128,7 +131,7 @@ impl<W: Write> McapRecorder<W> {
         }
         let metadata = self.info.metadata.iter().cloned().collect();
         writer.write_metadata(&Metadata { name: "gyroflex".to_owned(), metadata })?;
-        self.channels = Channels::add(&mut writer, self.info.gear_ratios.iter().any(Option::is_some))?;
+        self.channels = Channels::add(&mut writer, &self.info)?;
         self.writer = Some(writer);
         self.put(self.channels.description, 0, &ros::string(&self.info.urdf))?;
         self.close_chunk()
@@ -214,6 +217,18 @@ impl<W: Write> Recorder for McapRecorder<W> {
         Ok(())
     }
 
+    fn impact(&mut self, impact: &Impact) -> Result<(), Error> {
+        if self.writer.is_none() {
+            return Err(file::finished(&self.name));
+        }
+        impact.check(&self.info, self.last)?;
+        let Some(channel) = self.channels.impacts else { return Ok(()) };
+        let message = proto::Impact::new(&self.info, impact).encode_to_vec();
+        let time = Stamp::new(impact.t).total_nanos();
+        // Its time is found by halving steps, and may be past that of the next sample by rounding: `last` is not for it.
+        self.put(channel, time, &message).map_err(|e| error(&self.name, e))
+    }
+
     fn finish(&mut self) -> Result<(), Error> {
         // The writer's own drop finishes a log too, but cannot report what went wrong.
         match self.writer.take() {
@@ -224,7 +239,8 @@ impl<W: Write> Recorder for McapRecorder<W> {
 }
 
 impl Channels {
-    fn add<W: Write + io::Seek>(writer: &mut Writer<W>, motors: bool) -> Result<Self, McapError> {
+    fn add<W: Write + io::Seek>(writer: &mut Writer<W>, info: &RunInfo) -> Result<Self, McapError> {
+        let (motors, contacts) = (info.gear_ratios.iter().any(Option::is_some), !info.contacts.is_empty());
         let none = BTreeMap::new();
         let tf = writer.add_schema("foxglove.FrameTransforms", "protobuf", &FrameTransforms::schema())?;
         let joint_state = writer.add_schema("sensor_msgs/msg/JointState", "ros2msg", ros::JOINT_STATE.as_bytes())?;
@@ -239,6 +255,13 @@ impl Channels {
             },
             description: writer.add_channel(string, "/robot_description", "cdr", &none)?,
             state: writer.add_channel(state, "/gyroflex/state", "protobuf", &none)?,
+            impacts: match contacts {
+                true => {
+                    let impact = writer.add_schema("gyroflex.Impact", "protobuf", &proto::Impact::schema())?;
+                    Some(writer.add_channel(impact, "/gyroflex/impacts", "protobuf", &none)?)
+                }
+                false => None,
+            },
         })
     }
 }

@@ -23,7 +23,7 @@ pub use self::info::RunInfo;
 pub use self::mcap::{ChunkLimits, McapRecorder};
 pub use self::memory::MemoryRecorder;
 pub use self::read::{StateLog, read_states};
-pub use self::sample::{Footing, Sample, Touch};
+pub use self::sample::{Footing, Impact, Sample, Struck, Touch};
 pub use self::tee::TeeRecorder;
 
 use crate::error::Error;
@@ -35,6 +35,14 @@ pub trait Recorder {
     /// # Errors
     /// When the sample cannot be written; what was written before is safe.
     fn record(&mut self, sample: &Sample) -> Result<(), Error>;
+
+    /// Takes an impact that happened since the last sample; most recorders have no use for it.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    fn impact(&mut self, _impact: &Impact) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// Completes the record. Called once, also after a run that was interrupted or diverged.
     ///
@@ -48,6 +56,10 @@ impl<R: Recorder + ?Sized> Recorder for &mut R {
         (**self).record(sample)
     }
 
+    fn impact(&mut self, impact: &Impact) -> Result<(), Error> {
+        (**self).impact(impact)
+    }
+
     fn finish(&mut self) -> Result<(), Error> {
         (**self).finish()
     }
@@ -56,6 +68,10 @@ impl<R: Recorder + ?Sized> Recorder for &mut R {
 impl<R: Recorder + ?Sized> Recorder for Box<R> {
     fn record(&mut self, sample: &Sample) -> Result<(), Error> {
         (**self).record(sample)
+    }
+
+    fn impact(&mut self, impact: &Impact) -> Result<(), Error> {
+        (**self).impact(impact)
     }
 
     fn finish(&mut self) -> Result<(), Error> {

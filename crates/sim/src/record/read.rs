@@ -1,8 +1,8 @@
 //! Reads our own logs back, finished or cut short.
 
 use super::columns::Table;
-use super::proto::State;
-use super::{RunInfo, file};
+use super::proto::{self, State};
+use super::{Impact, RunInfo, file};
 use crate::error::Error;
 use ::mcap::io::MessageReader;
 use ::mcap::sans_io::LinearReaderOptions;
@@ -17,11 +17,13 @@ use std::path::Path;
 pub struct StateLog {
     /// All of `/gyroflex/state`: the columns of a record up to and without the poses of the links.
     pub table: Table,
+    /// All of `/gyroflex/impacts`, by the contacts in the order of the table.
+    pub impacts: Vec<Impact>,
     /// Whether the log was finished; else its run was killed and the table holds what reached the file.
     pub complete: bool,
 }
 
-/// Reads `/gyroflex/state` of a log.
+/// Reads `/gyroflex/state` and `/gyroflex/impacts` of a log.
 ///
 /// # Errors
 /// When the file cannot be read, is no MCAP log, or holds no states of ours. A log cut short is no error.
@@ -47,6 +49,13 @@ pub fn read_states(path: &Path) -> Result<StateLog, Error> {
                 }
                 log.table.push(&state.sample());
             }
+            Ok(message) if message.channel.topic == "/gyroflex/impacts" => {
+                let at = || format!("/gyroflex/impacts at {} ns", message.log_time);
+                let impact = proto::Impact::decode(message.data.as_ref())
+                    .map_err(|e| not_ours(&name, format!("{} is no gyroflex.Impact: {e}", at())))?;
+                let impact = run.as_ref().and_then(|info| impact.impact(info));
+                log.impacts.push(impact.ok_or_else(|| not_ours(&name, format!("{} is of no known contact", at())))?);
+            }
             Ok(_) => {}
             Err(McapError::UnexpectedEof) => log.complete = false,
             Err(McapError::Io(source)) => return Err(file::read_error(&name, &source)),
@@ -71,6 +80,9 @@ fn run_info(state: &State) -> RunInfo {
         prismatic: state.joints.iter().map(|j| j.prismatic).collect(),
         floating: state.base.is_some(),
         held: state.footing.is_some(),
+        modes: state.modes.iter().map(|m| m.name.clone()).collect(),
+        turning: state.modes.iter().map(|m| m.turning).collect(),
+        tips: state.tips.iter().map(|t| t.link.clone()).collect(),
         contacts: state.footing.as_ref().map_or_else(Vec::new, |footing| footing.names()),
         ..RunInfo::default()
     }

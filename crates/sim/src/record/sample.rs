@@ -1,7 +1,8 @@
 //! One instant of a run, and the check every recorder makes before it takes one.
 
 use super::RunInfo;
-use super::columns::{PER_JOINT, WHOLE};
+use super::columns::{PER_JOINT, PER_MODE, WHOLE};
+use crate::bending::Tip;
 use crate::error::{Error, ErrorKind};
 use gyroflex::spatial::Transform;
 
@@ -56,6 +57,14 @@ pub struct Sample {
     pub frames: Vec<Transform<f64>>,
     /// What holds the robot; only where something beside its joints does.
     pub footing: Option<Footing>,
+    /// Modal coordinates of links that bend, in the order of [`RunInfo::modes`] [m, in torsion rad].
+    pub eta: Vec<f64>,
+    /// Their rates.
+    pub etad: Vec<f64>,
+    /// Their accelerations.
+    pub etadd: Vec<f64>,
+    /// Deflections of the tips of links that bend, in the order of [`RunInfo::tips`].
+    pub tips: Vec<Tip>,
 }
 
 /// What holds a robot beside its joints.
@@ -83,6 +92,45 @@ pub struct Touch {
     pub mode: f64,
 }
 
+/// An impact of contact points with the ground. It takes no time: positions stay, velocities jump.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Impact {
+    /// When [s].
+    pub t: f64,
+    /// The points that took part, those that were on the ground already among them.
+    pub struck: Vec<Struck>,
+    /// Kinetic energy before less that after [J].
+    pub energy_lost: f64,
+}
+
+/// A point that takes part in an impact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Struck {
+    /// Its index in [`RunInfo::contacts`].
+    pub contact: usize,
+    /// Impulse of the ground on it, world axes [N s].
+    pub impulse: [f64; 3],
+    /// Its velocity before, world axes [m/s].
+    pub before: [f64; 3],
+    /// Its velocity after, world axes [m/s].
+    pub after: [f64; 3],
+}
+
+impl Impact {
+    /// Checks the impact against the run it belongs to, as [`Sample::check`] does a sample.
+    ///
+    /// # Errors
+    /// Names what does not fit, and the time.
+    pub fn check(&self, info: &RunInfo, previous: Option<f64>) -> Result<(), Error> {
+        check_time(self.t, previous)?;
+        if self.struck.iter().any(|struck| struck.contact >= info.contacts.len()) {
+            return Err(shape("contacts", format!("an impact at t = {} s is of a point that the run has not", self.t)));
+        }
+        let all = self.struck.iter().flat_map(|s| s.impulse.into_iter().chain(s.before).chain(s.after));
+        finite(self.t, format_args!("an impact"), &all.chain([self.energy_lost]).collect::<Vec<_>>())
+    }
+}
+
 impl Footing {
     /// All its numbers in the order of the columns.
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
@@ -101,12 +149,7 @@ impl Sample {
     /// # Errors
     /// Names the quantity, the joint and the time.
     pub fn check(&self, info: &RunInfo, previous: Option<f64>) -> Result<(), Error> {
-        if !(0.0..LAST_TIME).contains(&self.t) {
-            return Err(shape("time", format!("{} s is not a time a log can hold", self.t)));
-        }
-        if let Some(previous) = previous.filter(|&p| p > self.t) {
-            return Err(shape("time", format!("runs back from {previous} s to {} s", self.t)));
-        }
+        check_time(self.t, previous)?;
         for quantity in PER_JOINT {
             let values = (quantity.get)(self);
             if values.len() != info.joints.len() {
@@ -116,6 +159,21 @@ impl Sample {
             for (joint, &value) in info.joints.iter().zip(values) {
                 self.finite(format_args!("{} of joint `{joint}`", quantity.key), &[value])?;
             }
+        }
+        for quantity in PER_MODE {
+            let values = (quantity.get)(self);
+            if values.len() != info.modes.len() {
+                return Err(shape(quantity.key, format!("{} values for {} modes", values.len(), info.modes.len())));
+            }
+            for (mode, &value) in info.modes.iter().zip(values) {
+                self.finite(format_args!("{} of mode `{mode}`", quantity.key), &[value])?;
+            }
+        }
+        if self.tips.len() != info.tips.len() {
+            return Err(shape("tip", format!("{} deflections for {} links", self.tips.len(), info.tips.len())));
+        }
+        for (link, tip) in info.tips.iter().zip(&self.tips) {
+            self.finite(format_args!("deflection of link `{link}`"), &[tip.displacement, tip.rotation].concat())?;
         }
         for quantity in WHOLE {
             self.finite(format_args!("{}", quantity.key), &[(quantity.get)(self)])?;
@@ -145,16 +203,30 @@ impl Sample {
     }
 
     fn finite(&self, what: std::fmt::Arguments<'_>, values: &[f64]) -> Result<(), Error> {
-        match values.iter().find(|v| !v.is_finite()) {
-            None => Ok(()),
-            Some(value) => Err(Error {
-                kind: ErrorKind::Diverged,
-                file: String::new(),
-                element: what.to_string(),
-                problem: format!("is {value} at t = {} s", self.t),
-                remedy: "the record holds the run up to here; use a smaller step or a stiff integrator".to_owned(),
-            }),
-        }
+        finite(self.t, what, values)
+    }
+}
+
+fn finite(t: f64, what: std::fmt::Arguments<'_>, values: &[f64]) -> Result<(), Error> {
+    match values.iter().find(|v| !v.is_finite()) {
+        None => Ok(()),
+        Some(value) => Err(Error {
+            kind: ErrorKind::Diverged,
+            file: String::new(),
+            element: what.to_string(),
+            problem: format!("is {value} at t = {t} s"),
+            remedy: "the record holds the run up to here; use a smaller step or a stiff integrator".to_owned(),
+        }),
+    }
+}
+
+fn check_time(t: f64, previous: Option<f64>) -> Result<(), Error> {
+    if !(0.0..LAST_TIME).contains(&t) {
+        return Err(shape("time", format!("{t} s is not a time a log can hold")));
+    }
+    match previous.filter(|&p| p > t) {
+        Some(previous) => Err(shape("time", format!("runs back from {previous} s to {t} s"))),
+        None => Ok(()),
     }
 }
 

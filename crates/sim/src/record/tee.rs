@@ -1,6 +1,6 @@
 //! Several recorders at once.
 
-use super::{Recorder, Sample};
+use super::{Impact, Recorder, Sample};
 use crate::error::Error;
 
 /// Hands every sample to all of its recorders.
@@ -40,6 +40,10 @@ impl<'a> TeeRecorder<'a> {
 impl Recorder for TeeRecorder<'_> {
     fn record(&mut self, sample: &Sample) -> Result<(), Error> {
         self.all(|r| r.record(sample))
+    }
+
+    fn impact(&mut self, impact: &Impact) -> Result<(), Error> {
+        self.all(|r| r.impact(impact))
     }
 
     fn finish(&mut self) -> Result<(), Error> {

@@ -91,10 +91,12 @@ fn linearized(
     Ok(out)
 }
 
-/// Leaves of the states what moves while all motors stand still: links behind elastic transmissions, and undriven joints.
+/// Leaves of the states what moves while all motors stand still: links behind elastic transmissions, undriven joints, and links
+/// that bend.
 fn hold_motors(linear: &mut Linearization, linearizer: &Linearizer, robot: &Robot) {
     let half = linearizer.layout().positions();
-    let moves = |k: &usize| linearizer.layout().elastic().contains(k) || robot.bodies[*k].drive.is_none();
+    let moves =
+        |k: &usize| linearizer.layout().elastic().contains(k) || robot.bodies.get(*k).is_none_or(|b| b.drive.is_none());
     let positions: Vec<usize> = (0..linearizer.layout().nv()).filter(moves).collect();
     let kept: Vec<usize> = positions.iter().copied().chain(positions.iter().map(|k| half + k)).collect();
     linear.a = linear.a.select_rows(&kept).select_columns(&kept);

@@ -113,6 +113,13 @@ pub struct Initial {
     /// Reflected motor velocities [rad/s or m/s]; default: the link velocities.
     #[serde(default)]
     pub thetad: JointValues,
+    /// Modal coordinates of links that bend, by the names of the modes [m, in torsion rad]; default: static equilibrium of the links
+    /// under gravity and the wrenches at time 0.
+    #[serde(default, skip_serializing_if = "JointValues::is_empty")]
+    pub eta: JointValues,
+    /// Rates of the modal coordinates [m/s, in torsion rad/s]; default: 0.
+    #[serde(default, skip_serializing_if = "JointValues::is_empty")]
+    pub etad: JointValues,
     /// Pose and twist of a floating root; default: at the world's origin, at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base: Option<Base>,

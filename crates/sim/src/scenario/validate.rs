@@ -86,6 +86,8 @@ impl Check<'_> {
         self.joint_values("initial.qd", &initial.qd)?;
         self.joint_values("initial.theta", &initial.theta)?;
         self.joint_values("initial.thetad", &initial.thetad)?;
+        self.joint_values("initial.eta", &initial.eta)?;
+        self.joint_values("initial.etad", &initial.etad)?;
         if let Some(base) = &initial.base {
             self.finite("initial.base.xyz", &base.xyz)?;
             self.finite("initial.base.rpy", &base.rpy)?;

@@ -24,11 +24,13 @@ impl Simulation {
         }
         let mut causes = Vec::new();
         if let Some(mode) = self.modes.fastest() {
-            causes.push(format!("its fastest mode is {:.4e} Hz at joint `{}`", mode.frequency, mode.joint));
+            let place = if mode.bends { "mode" } else { "joint" };
+            causes.push(format!("its fastest mode is {:.4e} Hz at {place} `{}`", mode.frequency, mode.joint));
         }
         if let Some(decay) = &self.modes.decay {
             let text = "its fastest decay by damping and friction at standstill is";
-            causes.push(format!("{text} {:.4e} 1/s at joint `{}`", decay.rate, decay.joint));
+            let place = if self.joints.modes.contains(&decay.joint) { "mode" } else { "joint" };
+            causes.push(format!("{text} {:.4e} 1/s at {place} `{}`", decay.rate, decay.joint));
         }
         let problem = format!(
             "a step of {step:e} s makes `{}` unstable on this robot: {}",
@@ -96,6 +98,13 @@ impl Simulation {
             ];
             if let Some((name, value, _)) = quantities.into_iter().find(|(_, x, bound)| insane(*x, *bound)) {
                 return Err(self.diverged(&joint.name, t, &format!("its {name} is {value:e}")));
+            }
+        }
+        let (modes, rates) = (state.q.iter().rev(), state.qd.iter().rev());
+        for (name, (eta, etad)) in self.joints.modes.iter().rev().zip(modes.zip(rates)) {
+            if insane(*eta, MAX_POSITION) || insane(*etad, MAX_SPEED) {
+                let problem = format!("its coordinate is {eta:e}, its rate {etad:e}");
+                return Err(Error { element: format!("mode `{name}`"), ..self.diverged(name, t, &problem) });
             }
         }
         if self.joints.floating {

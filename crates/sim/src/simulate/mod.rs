@@ -93,7 +93,13 @@ impl Simulation {
         let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);
         let mut loads = Loads::new(&scenario.wrenches, &robot, &file.keys)?;
         let motors = control.start(&references)?;
-        let mut initial = start::initial_state(file, &joints, &references, motors, &mut dynamics, &mut loads)?;
+        if !robot.held.is_empty() || scenario.ground.is_some() {
+            let remedy = "take `ground` out of the scenario and constraints and couplings off the robot, or the link out of `flexible_links`";
+            robot.refuse_bending("what holds a robot beside its joints", remedy)?;
+        }
+        let mut contacts = Contacts::new(&robot, scenario.ground, &dynamics, &file.keys)?;
+        let mut initial =
+            start::initial_state(file, &joints, &references, motors, &mut dynamics, &mut loads, &mut contacts)?;
         if let Some(walking) = control.walking() {
             let given = [&scenario.initial.q, &scenario.initial.qd, &scenario.initial.theta, &scenario.initial.thetad];
             if given.into_iter().all(JointValues::is_empty) {
@@ -104,7 +110,6 @@ impl Simulation {
                 return Err(fault(&file.keys, "controller.type", problem, "add `ground: {friction: …, planar: true}`"));
             }
         }
-        let mut contacts = Contacts::new(&robot, scenario.ground, &dynamics, &file.keys)?;
         if !contacts.is_empty() {
             if !matches!(scenario.integrator, Integrator::Rk4 { .. }) {
                 let problem =

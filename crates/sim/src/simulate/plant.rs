@@ -36,20 +36,7 @@ pub(super) fn plant(nominal: &Robot, plant: &Plant, keys: &Keys) -> Result<Robot
         })?;
     }
     if let Some(factors) = &plant.mass {
-        scale(&mut robot, factors, keys, "plant.mass", "mass", |robot, body, factor| {
-            let load = robot.payload.as_mut().filter(|load| load.body == Some(body));
-            let inertia = &mut robot.bodies[body].inertia;
-            let own = load.as_ref().map_or(*inertia, |load| load.unloaded);
-            let changed = own.map(|x| x * factor);
-            *inertia = match load {
-                None => changed,
-                Some(Payload { inertia: load, unloaded, .. }) => {
-                    *unloaded = changed;
-                    changed + *load
-                }
-            };
-            own.mass > 0.0
-        })?;
+        scale(&mut robot, factors, keys, "plant.mass", "mass", Robot::scale_mass)?;
     }
     if let Some(payload) = &plant.payload {
         let put = payload.put_on(&mut robot, keys, "plant.payload");

@@ -8,7 +8,6 @@ use crate::error::{Error, Warning};
 use crate::ode::Halt;
 use crate::record::Recorder;
 use crate::scenario::Integrator;
-use gyroflex::integrate::integrate;
 use std::ops::ControlFlow;
 use std::time::Instant as WallClock;
 
@@ -21,6 +20,8 @@ struct Progress {
     steps: u64,
     interrupted: bool,
     tally: Tally,
+    /// Impacts that were recorded.
+    impacts: usize,
     /// Joints whose limits were already reported.
     beyond: Vec<bool>,
 }
@@ -94,12 +95,15 @@ impl Simulation {
             self.contacts.start(&mut self.dynamics, &mut self.state, start, keys, &mut Vec::new())?;
         }
         let n = self.joints.len();
-        let mut done = Progress { t: 0.0, steps: 0, interrupted: false, tally: Tally::new(n), beyond: vec![false; n] };
+        let (tally, beyond) = (Tally::new(n), vec![false; n]);
+        let mut done = Progress { t: 0.0, steps: 0, interrupted: false, tally, impacts: 0, beyond };
         for instant in self.clock() {
             if instant.t > done.t {
                 self.loads.set_time(done.t);
                 let start = done.t;
-                let (steps, stopped) = self.advance(start, instant.t - start, progress)?;
+                let advanced = self.advance(start, instant.t - start, progress);
+                self.tell_impacts(recorder, &mut done.impacts)?;
+                let (steps, stopped) = advanced?;
                 done.steps += steps;
                 if let Some(t) = stopped {
                     (done.t, done.interrupted) = (t, true);
@@ -132,6 +136,7 @@ impl Simulation {
             self.control.tick(known, at, self.state.view(), &mut self.tau)?;
             self.walk(instant.t)?;
             self.agree(instant.t)?;
+            self.tell_impacts(recorder, &mut done.impacts)?;
         }
         if !instant.log {
             return Ok(());
@@ -143,6 +148,15 @@ impl Simulation {
         done.tally.add(&sampler.sample);
         recorder.record(&sampler.sample)?;
         self.watch_limits(instant.t, &mut done.beyond);
+        Ok(())
+    }
+
+    /// Hands on the impacts that are new, of which `told` are not.
+    fn tell_impacts(&self, recorder: &mut dyn Recorder, told: &mut usize) -> Result<(), Error> {
+        for impact in self.contacts.impacts().get(*told..).unwrap_or_default() {
+            recorder.impact(impact)?;
+            *told += 1;
+        }
         Ok(())
     }
 
@@ -242,7 +256,7 @@ impl Simulation {
         for (half, v) in self.half_step.iter_mut().zip(qd) {
             *half = 0.5 * h * v;
         }
-        integrate(&self.dynamics.model(), q, &self.half_step, &mut self.halfway)?;
+        self.dynamics.integrate(q, &self.half_step, &mut self.halfway)?;
         self.loads.update(&self.dynamics, &self.halfway)?;
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! From a state to a sample: everything that is logged.
 
+use crate::bending::{CrossSection, Tip};
 use crate::contact::Contacts;
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
@@ -17,6 +18,8 @@ pub(crate) struct Sampler {
     joints: Coordinates,
     links: Vec<LinkFrame>,
     rotors: Vec<Rotor>,
+    /// Tips of the links that bend.
+    tips: Vec<CrossSection>,
     /// The robot without gravity, for torques of the rotors' couples alone.
     weightless: Option<Dynamics>,
     poses: Vec<Transform<f64>>,
@@ -39,10 +42,12 @@ struct LinkFrame {
     body: Option<usize>,
     placement: Transform<f64>,
     parent: Option<usize>,
+    /// What carries it on a link that bends.
+    section: Option<CrossSection>,
 }
 
 /// A rotor whose carrier is a moving body.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Rotor {
     v: usize,
     mount: usize,
@@ -50,6 +55,8 @@ struct Rotor {
     axis: Vec3<f64>,
     /// `N J` [kg m²].
     momentum: f64,
+    /// Where it sits on a link that bends.
+    section: Option<CrossSection>,
 }
 
 impl Sampler {
@@ -64,7 +71,12 @@ impl Sampler {
                 let Some(body) = mount.body else { continue };
                 let axis = mount.placement.rotation() * mount.axis;
                 let momentum = drive.gear_ratio * drive.rotor.inertia;
-                rotors.push(Rotor { v: joint.v, mount: body, axis, momentum });
+                let seat = robot.flexible.seats.get(joint.body).and_then(|seat| seat.rotor);
+                let section = seat.map(|place| {
+                    let x = robot.flexible.links[place.link].stations[place.station].x;
+                    CrossSection::new(&robot.flexible, place.link, x)
+                });
+                rotors.push(Rotor { v: joint.v, mount: body, axis, momentum, section });
             }
         }
         let weightless = if rotors.is_empty() {
@@ -74,11 +86,13 @@ impl Sampler {
             Some(Dynamics::new(robot.model(fidelity)?))
         };
         let parent = |name: &String| robot.links.iter().position(|l| l.name == *name);
-        let links = robot.links.iter().map(|link| LinkFrame {
+        let links = robot.links.iter().enumerate().map(|(i, link)| LinkFrame {
             body: link.body,
             placement: link.placement,
             parent: link.parent.as_ref().and_then(parent),
+            section: CrossSection::of_link(robot, i),
         });
+        let tips = CrossSection::tips(&robot.flexible);
         let zeros = vec![0.0; n];
         let sample = Sample {
             q: zeros.clone(),
@@ -95,12 +109,14 @@ impl Sampler {
             reference: zeros.clone(),
             tracking_error: zeros,
             frames: vec![Transform::identity(); robot.links.len()],
+            tips: vec![Tip::default(); tips.len()],
             ..Sample::default()
         };
         Ok(Self {
             joints: joints.clone(),
             links: links.collect(),
             rotors,
+            tips,
             weightless,
             poses: vec![Transform::identity(); bodies],
             velocities: vec![Motion::zero(); bodies],
@@ -175,6 +191,14 @@ impl Sampler {
             }
             sample.friction[i] += drive.rotor.reflected_friction(sample.thetad[i]);
         }
+        let (joints, eta) = (state.qd.len() - self.joints.modes.len(), dynamics.eta(state.q));
+        for (to, from) in
+            [(&mut sample.eta, eta), (&mut sample.etad, &state.qd[joints..]), (&mut sample.etadd, &self.qdd[joints..])]
+        {
+            to.clear();
+            to.extend_from_slice(from);
+        }
+        sample.tips.iter_mut().zip(&self.tips).for_each(|(tip, section)| *tip = section.deflection(eta));
         sample.kinetic_energy = energy.kinetic;
         sample.gravity_energy = energy.gravity;
         sample.elastic_energy = energy.elastic;
@@ -189,12 +213,19 @@ impl Sampler {
         self.torque.fill(0.0);
         let Some(weightless) = &mut self.weightless else { return Ok(()) };
         dynamics.velocities(state.q, state.qd, &mut self.velocities)?;
+        let (eta, etad) = (dynamics.eta(state.q), &state.qd[state.qd.len() - self.joints.modes.len()..]);
         self.couples.fill(Force::zero());
         for rotor in &self.rotors {
-            let omega = self.velocities[rotor.mount].ang;
+            let mut omega = self.velocities[rotor.mount].ang;
+            let carried = rotor.section.as_ref().map(|section| {
+                let pose = section.pose(eta);
+                omega = pose.rot * omega + section.velocity(eta, etad).ang;
+                pose
+            });
             let (rate, acceleration) = (state.thetad[rotor.v], self.thetadd[rotor.v]);
             let couple = rotor.axis.scale(acceleration) + omega.cross(rotor.axis).scale(rate);
-            self.couples[rotor.mount] += Force::couple(couple.scale(-rotor.momentum));
+            let couple = Force::couple(couple.scale(-rotor.momentum));
+            self.couples[rotor.mount] += carried.map_or(couple, |pose| pose.inv_force(couple));
         }
         let rest = self.rest.as_slice();
         let still = State { q: state.q, qd: rest, theta: rest, thetad: rest };
@@ -220,8 +251,13 @@ impl Sampler {
     /// Pose of every link in its parent.
     fn frames(&mut self, dynamics: &Dynamics, q: &[f64]) -> Result<(), Error> {
         dynamics.placements(q, &mut self.poses)?;
+        let eta = dynamics.eta(q);
         for (i, link) in self.links.iter().enumerate() {
-            let from_world = |l: &LinkFrame| l.body.map_or(l.placement, |b| l.placement.after(self.poses[b]));
+            let from_world = |l: &LinkFrame| match (l.body, &l.section) {
+                (Some(b), Some(section)) => l.placement.after(section.pose(eta).after(self.poses[b])),
+                (Some(b), None) => l.placement.after(self.poses[b]),
+                (None, _) => l.placement,
+            };
             let own = from_world(link);
             self.sample.frames[i] = match link.parent {
                 Some(parent) => own.after(from_world(&self.links[parent]).inverse()),

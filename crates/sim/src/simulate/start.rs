@@ -1,5 +1,6 @@
 //! The state a scenario starts from.
 
+use crate::contact::Contacts;
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
 use crate::equilibrium::Equilibrium;
@@ -14,9 +15,9 @@ use gyroflex::integrate::StateMut;
 /// A state in storage of its own; lengths as in [`State`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateVec {
-    /// Joint positions, `nq` entries.
+    /// Joint positions, then modal coordinates of links that bend, `nq` entries.
     pub q: Vec<f64>,
-    /// Joint velocities, `nv` entries.
+    /// Joint velocities, then rates of the modal coordinates, `nv` entries.
     pub qd: Vec<f64>,
     /// Reflected motor positions, `nv` entries.
     pub theta: Vec<f64>,
@@ -41,8 +42,8 @@ impl StateVec {
     }
 }
 
-/// The initial state: what the scenario gives, and for the rest the reference at time 0 and static equilibrium; or, where the controller
-/// knows how the motors move, that.
+/// The initial state: what the scenario gives, and for the rest the reference at time 0 and static equilibrium, with the forces of what holds the
+/// robot if there is one with them; or, where the controller knows how the motors move, that.
 pub(super) fn initial_state(
     file: &ScenarioFile,
     joints: &Coordinates,
@@ -50,6 +51,7 @@ pub(super) fn initial_state(
     motors: Option<Motors<f64>>,
     dynamics: &mut Dynamics,
     loads: &mut Loads,
+    contacts: &mut Contacts,
 ) -> Result<StateVec, Error> {
     let (initial, keys) = (&file.scenario.initial, &file.keys);
     let mut state = StateVec::zeros(dynamics.nq(), dynamics.nv());
@@ -77,11 +79,17 @@ pub(super) fn initial_state(
         state.thetad[joint.v] = state.qd[joint.v];
     }
 
+    let eta = joints.spread_modes(&initial.eta, keys, "initial.eta")?;
+    let etad = joints.spread_modes(&initial.etad, keys, "initial.etad")?;
     loads.set_time(0.0);
+    hang(dynamics, loads, &mut state.q, &eta)?;
+    let first = state.qd.len() - etad.len();
+    state.qd[first..].iter_mut().zip(&etad).for_each(|(rate, given)| *rate = given.unwrap_or(0.0));
     loads.update(dynamics, &state.q)?;
     let mut tau = vec![0.0; dynamics.nv()];
     let mut equilibrium = Equilibrium::new(dynamics.nv());
     equilibrium.solve(dynamics, &state.q, loads.external(), &mut state.theta, &mut tau)?;
+    contacts.equilibrium(dynamics, &mut state, loads, &mut equilibrium)?;
     for (i, joint) in joints.joints.iter().enumerate() {
         let elastic = dynamics.model().bodies()[joint.body].is_elastic();
         if let Some(motors) = motors.filter(|_| elastic) {
@@ -99,6 +107,31 @@ pub(super) fn initial_state(
     }
     Ok(state)
 }
+
+/// Modal coordinates as given; those that are not as the links hang at rest. Loads turn with the links, so both are found in turn.
+fn hang(dynamics: &mut Dynamics, loads: &mut Loads, q: &mut [f64], given: &[Option<f64>]) -> Result<(), Error> {
+    if given.is_empty() {
+        return Ok(());
+    }
+    let first = q.len() - given.len();
+    if given.iter().any(Option::is_none) {
+        for _ in 0..MOST_TURNS {
+            let before = q[first..].to_vec();
+            loads.update(dynamics, q)?;
+            dynamics.settle(q, loads.external())?;
+            let moved = q[first..].iter().zip(&before).fold(0.0, |most: f64, (x, b)| most.max((x - b).abs()));
+            let size = q[first..].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            if loads.is_empty() || moved <= 1e-13 * size {
+                break;
+            }
+        }
+    }
+    q[first..].iter_mut().zip(given).for_each(|(eta, given)| *eta = given.unwrap_or(*eta));
+    Ok(())
+}
+
+/// Deflection and loads that turn with it agree after a few turns, or will not.
+const MOST_TURNS: usize = 50;
 
 /// The unit quaternion `x y z w` of roll, pitch and yaw about fixed axes, as in URDF.
 fn quaternion([roll, pitch, yaw]: [f64; 3]) -> [f64; 4] {

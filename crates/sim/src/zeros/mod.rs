@@ -9,7 +9,8 @@
 //! * `y = θ`, motors held: `M q̈ + (D + f') q̇ + (k' + ∂g/∂q) q = 0`. Without losses they lie on the imaginary axis, and
 //!   where gravity is stronger than a spring one of them lies to the right of it.
 //!
-//! Joints without an elastic transmission are where they are asked to be, in both cases.
+//! Joints without an elastic transmission are where they are asked to be, in both cases. Where links bend and all gears are rigid, the
+//! links go on swinging about that: `M η̈ + D η̇ + (K + ∂g/∂η) η = 0`, stable as long as gravity is weaker than the links.
 
 mod report;
 
@@ -38,7 +39,7 @@ pub enum InverseOutput {
 pub struct Zero {
     /// Real and imaginary part [1/s].
     pub value: [f64; 2],
-    /// The joint whose free side moves most.
+    /// The joint whose free side moves most, or the mode of a link that bends.
     pub joint: String,
 }
 
@@ -65,6 +66,9 @@ pub fn zeros(linearizer: &mut Linearizer, q: &[f64], output: InverseOutput) -> R
         let problem = "its root floats, and no motor leads it along a motion that is given";
         return Err(fault("robot", problem, "fix the root"));
     }
+    if linearizer.layout().modes() > 0 {
+        return of_modes(linearizer, q);
+    }
     let point = linearizer.equilibrium_at(q)?;
     let transmissions = transmissions(linearizer, &point);
     match output {
@@ -87,6 +91,53 @@ fn transmissions(linearizer: &Linearizer, point: &OperatingPoint) -> Vec<Transmi
             Transmission { k, stiffness, damping: elastic.damping }
         })
         .collect()
+}
+
+/// Joints on their way behind rigid gears, links that bend: `M η̈ + D η̇ + (K + ∂g/∂η) η = 0`.
+fn of_modes(linearizer: &mut Linearizer, q: &[f64]) -> Result<Vec<Zero>, Error> {
+    if !linearizer.layout().elastic().is_empty() {
+        linearizer.robot.refuse_bending("the inverse of elastic joints", ELASTIC_AND_BENDING)?;
+    }
+    let point = linearizer.equilibrium_at(q)?;
+    let [inertia, damping, stiffness] = linearizer.dynamics.held_modes(&point.state.q)?;
+    let n = inertia.nrows();
+    let inertia = inertia.lu();
+    let (Some(stiffness), Some(damping)) = (inertia.solve(&stiffness), inertia.solve(&damping)) else {
+        return Err(fault("robot", "its modes have no inertia", "give the beams a mass per length"));
+    };
+    let names = linearizer.robot.mode_names();
+    held(n, &stiffness, &damping, |i| names[i].clone(), &point)
+}
+
+/// What an inverse of elastic joints is told about links that bend.
+pub(crate) const ELASTIC_AND_BENDING: &str =
+    "invert the model `rigid`, whose gears are stiff and whose links bend, or take the links out of `flexible_links`";
+
+/// Eigenvalues of `ẍ + D ẋ + K x = 0`.
+fn held(
+    n: usize,
+    stiffness: &DMatrix<f64>,
+    damping: &DMatrix<f64>,
+    name: impl Fn(usize) -> String,
+    point: &OperatingPoint,
+) -> Result<Vec<Zero>, Error> {
+    let mut a = DMatrix::zeros(2 * n, 2 * n);
+    a.view_mut((0, n), (n, n)).fill_with_identity();
+    a.view_mut((n, 0), (n, n)).copy_from(&-stiffness);
+    a.view_mut((n, n), (n, n)).copy_from(&-damping);
+    let held = Linearization {
+        a,
+        b: DMatrix::zeros(2 * n, 0),
+        c: DMatrix::zeros(0, 2 * n),
+        d: DMatrix::zeros(0, 0),
+        states: (0..2 * n).map(|i| name(i % n)).collect(),
+        inputs: Vec::new(),
+        outputs: Vec::new(),
+        point: point.clone(),
+        step: None,
+    };
+    let modes = natural_modes(&held)?;
+    Ok(modes.into_iter().map(|mode| Zero { value: mode.eigenvalue, joint: mode.moves_most }).collect())
 }
 
 fn of_links(linearizer: &Linearizer, transmissions: &[Transmission]) -> Vec<Zero> {
@@ -126,24 +177,7 @@ fn of_motors(
         let remedy = "give the links that it moves a mass, or take another pose";
         return Err(fault("robot", "its inertia matrix has no inverse at this pose", remedy));
     };
-    let mut a = DMatrix::zeros(2 * n, 2 * n);
-    a.view_mut((0, n), (n, n)).fill_with_identity();
-    a.view_mut((n, 0), (n, n)).copy_from(&-stiffness);
-    a.view_mut((n, n), (n, n)).copy_from(&-damping);
-    let joint = |t: &Transmission| linearizer.layout().joint(t.k).to_owned();
-    let held = Linearization {
-        a,
-        b: DMatrix::zeros(2 * n, 0),
-        c: DMatrix::zeros(0, 2 * n),
-        d: DMatrix::zeros(0, 0),
-        states: transmissions.iter().chain(transmissions).map(joint).collect(),
-        inputs: Vec::new(),
-        outputs: Vec::new(),
-        point: point.clone(),
-        step: None,
-    };
-    let modes = natural_modes(&held)?;
-    Ok(modes.into_iter().map(|mode| Zero { value: mode.eigenvalue, joint: mode.moves_most }).collect())
+    held(n, &stiffness, &damping, |i| linearizer.layout().joint(transmissions[i].k).to_owned(), point)
 }
 
 fn fault(element: &str, problem: &str, remedy: &str) -> Error {

@@ -59,6 +59,9 @@ pub struct InverseStability {
     pub joints: Vec<JointZeros>,
     /// What becomes of them.
     pub verdict: Verdict,
+    /// Whether they are those of links that bend.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub bends: bool,
     /// The joint, and where it depends on it the pose, that the verdict is due to.
     pub reason: String,
 }
@@ -97,9 +100,10 @@ impl InverseStability {
             JointZeros { slowest: slowest(own()), fastest: fastest(own()), joint, damping }
         });
         let joints: Vec<JointZeros> = joints.collect();
-        let (verdict, reason) = judge(output, &all, &joints);
+        let bends = layout.modes() > 0;
+        let (verdict, reason) = if bends { judge_modes(&all) } else { judge(output, &all, &joints) };
         let every = || all.iter().map(|(at, _)| at);
-        Ok(Self { output, poses, slowest: slowest(every()), fastest: fastest(every()), joints, verdict, reason })
+        Ok(Self { output, poses, slowest: slowest(every()), fastest: fastest(every()), joints, verdict, bends, reason })
     }
 }
 
@@ -109,6 +113,27 @@ fn slowest<'a>(all: impl Iterator<Item = &'a AtPose>) -> Option<AtPose> {
 
 fn fastest<'a>(all: impl Iterator<Item = &'a AtPose>) -> Option<AtPose> {
     all.max_by(|a, b| a.zero.size().total_cmp(&b.zero.size())).cloned()
+}
+
+/// The verdict on links that bend while their joints are on their way.
+fn judge_modes(all: &[(AtPose, f64)]) -> (Verdict, String) {
+    let Some(AtPose { zero, q }) = slowest(all.iter().map(|(at, _)| at)) else {
+        return (Verdict::Stable, "there are no internal dynamics".to_owned());
+    };
+    let (rate, rounding) = (zero.value[0], all.iter().map(|(_, rounding)| *rounding).fold(0.0, f64::max));
+    match rate {
+        _ if rate > rounding => (
+            Verdict::Unstable,
+            format!(
+                "mode `{}` falls away with {rate:.3e} 1/s at q = {q:?}: gravity beats the link's stiffness",
+                zero.joint
+            ),
+        ),
+        _ if rate >= -rounding => {
+            (Verdict::Undamped, format!("mode `{}` swings on without damping, at q = {q:?}", zero.joint))
+        }
+        _ => (Verdict::Stable, format!("the slowest fades with {:.3e} 1/s, mode `{}`, q = {q:?}", -rate, zero.joint)),
+    }
 }
 
 /// The verdict and its reason; every zero comes with what is rounding beside it.

@@ -1,7 +1,7 @@
 //! Small machines as URDF text, and short ways to run them.
 
 use gyroflex_sim::load::{LoadOptions, load_urdf_text};
-use gyroflex_sim::record::{MemoryRecorder, Sample};
+use gyroflex_sim::record::{Impact, MemoryRecorder, Sample};
 use gyroflex_sim::{Error, Robot, ScenarioFile, Simulation, Summary};
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -104,6 +104,7 @@ pub fn scenario(yaml: &str) -> ScenarioFile {
 pub struct Run {
     pub summary: Summary,
     pub samples: Vec<Sample>,
+    pub impacts: Vec<Impact>,
 }
 
 impl Run {
@@ -121,7 +122,7 @@ pub fn run(robot: &Robot, yaml: &str) -> Run {
     let mut simulation = Simulation::new(robot, &scenario(yaml)).unwrap_or_else(|e| panic!("{e}"));
     let mut memory = MemoryRecorder::new(simulation.run_info());
     let summary = simulation.run(&mut memory, &mut |_| ControlFlow::Continue(())).unwrap_or_else(|e| panic!("{e}"));
-    Run { summary, samples: memory.samples().to_vec() }
+    Run { summary, samples: memory.samples().to_vec(), impacts: memory.impacts().to_vec() }
 }
 
 #[track_caller]

@@ -100,3 +100,12 @@ fn unknown_and_useless_names_are_refused_with_key_and_remedy() {
         says(&error, &[key, problem, remedy]);
     }
 }
+
+/// In YAML 1.1 a plain `y` says yes.
+#[test]
+fn direction_y_needs_no_quotes() {
+    for directions in ["[x, y]", "[y]", "[\"y\"]"] {
+        let robot = pinned(&format!("  pin: {{link: pitch_link, directions: {directions}}}\n"));
+        assert_eq!(robot.held.len(), 1, "{directions}");
+    }
+}

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use gyroflex::spatial::{Mat3, Transform, Vec3};
-use gyroflex_sim::record::{Footing, RunInfo, Sample, Touch};
+use gyroflex_sim::record::{Footing, Impact, RunInfo, Sample, Struck, Touch};
 use std::path::PathBuf;
 
 /// A floating robot of three joints: elastic drive, rigid drive with a negative ratio, sliding joint without a drive.
@@ -69,6 +69,19 @@ pub fn sample(k: usize) -> Sample {
             pose([1.0, 1.0, 0.0], half_turn),
         ],
     }
+}
+
+/// An impact half a millisecond after the `k`-th sample.
+pub fn impact(k: usize) -> Impact {
+    let t = k as f64 * 1e-3 + 5e-4;
+    let wave = |phase: f64| (3.0 * t + phase).sin() / 3.0;
+    let struck = Struck {
+        contact: 0,
+        impulse: [8.0, 8.1, 8.2].map(wave),
+        before: [8.3, 8.4, 8.5].map(wave),
+        after: [8.6, 8.7, 8.8].map(wave),
+    };
+    Impact { t, struck: vec![struck], energy_lost: wave(8.9).abs() }
 }
 
 /// A fresh folder of that name for a test's files.

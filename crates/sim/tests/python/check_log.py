@@ -7,6 +7,7 @@ users have (PyPI: mcap, mcap-ros2-support, mcap-protobuf-support), by the schema
 """
 
 import csv
+import math
 import sys
 
 from mcap.reader import make_reader
@@ -34,6 +35,7 @@ class Checker:
         ]
         self.compared = 0
         self.seen = set()
+        self.impacts = 0
 
     def equal(self, what, value, expected):
         assert value == expected, f"{what}: {value!r} in the log, {expected!r} expected"
@@ -83,6 +85,16 @@ class Checker:
             self.column(row, f"zero_moment_point.{axis}", getattr(footing.zero_moment_point, axis))
         self.column(row, "constraint_drift", footing.constraint_drift)
 
+    def impact(self, message, log_time):
+        assert abs(log_time - message.time * 1e9) <= 1, "impact: log time"
+        known = {name[len("contact."):-len(".gap")] for name in self.names if name.endswith(".gap")}
+        assert message.contacts and {contact.name for contact in message.contacts} <= known, "impact: contacts"
+        for contact in message.contacts:
+            for vector in (contact.impulse, contact.velocity_before, contact.velocity_after):
+                assert all(math.isfinite(getattr(vector, axis)) for axis in "xyz"), "impact: numbers"
+        assert math.isfinite(message.energy_lost), "impact: energy"
+        self.impacts += 1
+
     def transforms(self, row, message):
         frames = {t.child_frame_id: t for t in message.transforms}
         for t in message.transforms:
@@ -128,6 +140,9 @@ def main(log, table, ratios):
                 assert message.data.lstrip().startswith("<"), "no URDF"
                 descriptions += 1
                 continue
+            if topic == "/gyroflex/impacts":
+                checker.impact(message, decoded.message.log_time)
+                continue
             row = checker.rows[counts[topic]]
             assert abs(decoded.message.log_time - row["time"] * 1e9) <= 1, f"{topic}: log time"
             checks[topic](row, message)
@@ -138,7 +153,10 @@ def main(log, table, ratios):
         attachments = [a.name for a in reader.iter_attachments()]
         assert attachments, "no attachments"
         assert any(m.name == "gyroflex" for m in reader.iter_metadata()), "no metadata"
-    print(f"{checker.compared} numbers of {len(checker.rows)} samples equal; attachments {attachments}")
+    print(
+        f"{checker.compared} numbers of {len(checker.rows)} samples equal; {checker.impacts} impacts; "
+        f"attachments {attachments}"
+    )
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ use crate::error::{Error, Warning};
 use crate::flexible::{Flexure, ModeInfo, StationInfo};
 use crate::robot::{Entry, Robot};
 use file::AtFile as At;
+use gyroflex::model::TransmissionSpec;
 use gyroflex::spatial::{SpatialInertia, SymMat3, Transform, Vec3};
 use number::Numbers;
 use std::collections::BTreeMap;
@@ -58,6 +59,7 @@ impl FlexibleFiles<'_> {
             return Err(self.keys.error("flexible_links", problem, "take fewer modes, or bend fewer links"));
         }
         if !robot.flexible.is_empty() {
+            self.refuse_remote_rotors(robot)?;
             self.attach(robot);
         }
         Ok(())
@@ -81,6 +83,20 @@ impl FlexibleFiles<'_> {
             return Err(self.keys.error(key, problem, format!("let `{carrier}` bend, `{name}` moves with its tip")));
         }
         Ok(body)
+    }
+
+    /// The recursions of robots that bend know no rigidly geared rotor but on the joint's parent.
+    fn refuse_remote_rotors(&self, robot: &Robot) -> Result<(), Error> {
+        for (body, joint) in robot.bodies.iter().zip(&robot.joints) {
+            let Some(drive) = body.drive else { continue };
+            let on = drive.rotor.mount.body;
+            if matches!(drive.transmission, TransmissionSpec::Rigid) && on.is_some() && on != body.parent {
+                let problem = "its gear is rigid and its rotor not on the parent link, which robots with links that bend cannot have";
+                let remedy = "mount it on the joint's parent link, or give `transmission` its stiffness";
+                return Err(self.keys.error(&format!("drives.{}.rotor.mount", joint.name), problem, remedy));
+            }
+        }
+        Ok(())
     }
 
     fn flexure(&self, name: &str, body: usize, file: &FlexibleLinkFile, key: &str) -> Result<Flexure, Error> {
@@ -159,7 +175,8 @@ impl FlexibleFiles<'_> {
     fn compare_masses(&self, robot: &mut Robot, flexure: &Flexure, key: &str) {
         let Some(link) = self.tree.links.iter().find(|l| l.name == flexure.name) else { return };
         let Some(inertial) = &link.inertial else { return };
-        let (urdf, here) = (inertial.mass.value, flexure.total_inertia().mass);
+        // To the milligram: what rounding adds is not worth reading.
+        let [urdf, here] = [inertial.mass.value, flexure.total_inertia().mass].map(|m| (m * 1e6).round() / 1e6);
         if (urdf - here).abs() > SAME_MASS * urdf.abs().max(here) {
             let message = format!(
                 "beam, hub and masses weigh {here} kg, but the URDF gives the link {urdf} kg ({}); what stands here counts",

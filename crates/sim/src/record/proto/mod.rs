@@ -2,9 +2,11 @@
 //! decodes by, comments and units included, so that no `protoc` is needed and the two cannot differ.
 
 mod foxglove;
+mod impact;
 mod state;
 
 pub(super) use foxglove::{FrameTransform, FrameTransforms, Quaternion, Timestamp, Vector3};
+pub(super) use impact::Impact;
 pub(super) use state::State;
 
 use prost::Message;
@@ -163,7 +165,7 @@ mod tests {
 
     #[test]
     fn schema_defines_every_message_before_it_is_used_and_only_once() {
-        for file in [files(&FrameTransforms::schema()), files(&State::schema())] {
+        for file in [files(&FrameTransforms::schema()), files(&State::schema()), files(&Impact::schema())] {
             let mut names: Vec<&str> = Vec::new();
             let mut types: Vec<String> = Vec::new();
             for f in &file {

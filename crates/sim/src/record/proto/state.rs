@@ -2,6 +2,7 @@
 
 use super::foxglove::{Quaternion, Vector3};
 use super::message;
+use crate::bending::Tip as Deflection;
 use crate::record::{Footing, RunInfo, Sample, Touch};
 
 message! { "gyroflex" "gyroflex/Joint.proto"
@@ -56,6 +57,26 @@ message! { "gyroflex" "gyroflex/Footing.proto"
     }
 }
 
+message! { "gyroflex" "gyroflex/Mode.proto"
+    /// One assumed mode of a link that bends. Units are those of a displacement; in torsion they are rad, rad/s and rad/s^2.
+    Mode {
+        1 name: [string] String, "Name of the mode";
+        2 turning: [bool] bool, "Whether its coordinate is an angle";
+        3 eta: [double] f64, "Modal coordinate [m]";
+        4 etad: [double] f64, "Its rate [m/s]";
+        5 etadd: [double] f64, "Its acceleration [m/s^2]";
+    }
+}
+
+message! { "gyroflex" "gyroflex/Tip.proto"
+    /// How far the tip of a link that bends is from where it would be on the rigid link, in the link's axes.
+    Tip {
+        1 link: [string] String, "Name of the link";
+        2 displacement: [message, optional] Option<Vector3>, "Displacement [m]";
+        3 rotation: [message, optional] Option<Vector3>, "Rotation vector [rad]";
+    }
+}
+
 message! { "gyroflex" "gyroflex/State.proto"
     /// The state of a robot with flexible joints at one instant.
     State {
@@ -63,12 +84,14 @@ message! { "gyroflex" "gyroflex/State.proto"
         2 joints: [message, repeated] Vec<Joint>, "Joints of one degree of freedom, in coordinate order";
         3 kinetic_energy: [double] f64, "Kinetic energy of links and rotors [J]";
         4 gravity_energy: [double] f64, "Potential energy of gravity [J]";
-        5 elastic_energy: [double] f64, "Energy stored in the transmissions [J]";
+        5 elastic_energy: [double] f64, "Energy stored in the transmissions and in links that bend [J]";
         6 power_in: [double] f64, "Power put in by motors and external loads [W]";
         7 dissipation: [double] f64, "Power lost in friction and damping, not negative [W]";
         8 significance: [double] f64, "Significance ratio of the gyroscopic coupling, Zhao et al. 2015, eq. 12 [-]";
         9 base: [message, optional] Option<Base>, "Floating root; absent on a fixed one";
         10 footing: [message, optional] Option<Support>, "What holds the robot beside its joints; absent where nothing does";
+        11 modes: [message, repeated] Vec<Mode>, "Modes of links that bend";
+        12 tips: [message, repeated] Vec<Tip>, "Tips of links that bend";
     }
 }
 
@@ -103,6 +126,8 @@ impl State {
             significance: s.significance,
             base: s.base_pose.zip(s.base_twist).map(|(pose, twist)| Base::new(pose, twist)),
             footing: s.footing.as_ref().map(|footing| Support::new(info, footing)),
+            modes: (0..info.modes.len()).map(|i| Mode::new(info, s, i)).collect(),
+            tips: info.tips.iter().zip(&s.tips).map(|(link, tip)| Tip::new(link, tip)).collect(),
         }
     }
 
@@ -134,7 +159,30 @@ impl State {
             significance: self.significance,
             frames: Vec::new(),
             footing: self.footing.as_ref().map(Support::footing),
+            eta: self.modes.iter().map(|m| m.eta).collect(),
+            etad: self.modes.iter().map(|m| m.etad).collect(),
+            etadd: self.modes.iter().map(|m| m.etadd).collect(),
+            tips: self.tips.iter().map(Tip::deflection).collect(),
         }
+    }
+}
+
+impl Mode {
+    fn new(info: &RunInfo, s: &Sample, i: usize) -> Self {
+        let (name, turning) = (info.modes[i].clone(), info.turning[i]);
+        Self { name, turning, eta: s.eta[i], etad: s.etad[i], etadd: s.etadd[i] }
+    }
+}
+
+impl Tip {
+    fn new(link: &str, tip: &Deflection) -> Self {
+        let vector = |[x, y, z]: [f64; 3]| Some(Vector3 { x, y, z });
+        Self { link: link.to_owned(), displacement: vector(tip.displacement), rotation: vector(tip.rotation) }
+    }
+
+    fn deflection(&self) -> Deflection {
+        let numbers = |v: &Option<Vector3>| v.as_ref().map_or([0.0; 3], |v| [v.x, v.y, v.z]);
+        Deflection { displacement: numbers(&self.displacement), rotation: numbers(&self.rotation) }
     }
 }
 
