@@ -113,6 +113,9 @@ pub struct Info {
 #[command(after_help = "\
 Optional keys of every line:
   tau_ext    generalised forces on the joints, link side
+  eta, etad  modal coordinates of links that bend, and their rates; 0 if left out. Answers have `etadd`
+  etadd      their accelerations, for inverse dynamics, which then gives `tau_eta`; left out, the modes are free
+  tau_eta    generalised forces on the modes, for forward dynamics
   wrenches   [{\"link\": \"tool\", \"force\": [0, 0, -10], \"torque\": [0, 0, 0], \"frame\": \"world\", \"point\": [0, 0, 0]}]
              in world axes (or \"frame\": \"link\") at the link's origin (or at \"point\", in the link's frame)
   gravity    [x, y, z] in world axes

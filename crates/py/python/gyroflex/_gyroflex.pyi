@@ -351,6 +351,10 @@ class Robot:
         """Names of the joints of one degree of freedom, in coordinate order: all but a floating root."""
 
     @property
+    def mode_names(self) -> list[str]:
+        """Names of the modes of links that bend. Their coordinates follow those of the joints in every array."""
+
+    @property
     def link_names(self) -> list[str]:
         """Names of all links of the URDF, those fused by fixed joints included."""
 

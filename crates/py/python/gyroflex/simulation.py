@@ -52,6 +52,9 @@ class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
     ``kinetic_energy``, ``gravity_energy``, …               ``(samples,)``        [J]
     ``power_in``, ``dissipation``                           ``(samples,)``        [W]
     ``significance``                                        ``(samples,)``        of the rotors' coupling [-]
+    ``eta``, ``etad``, ``etadd``                            ``(samples, modes)``  links that bend, by `Robot.mode_names` [m or rad]
+    ``tip``                                                 ``(samples, 6 n)``     displacement and rotation vector of the tips beside
+                                                                                  the rigid link [m, rad]
     ``base``                                                ``(samples, 13)``     floating root: ``x y z qx qy qz qw`` in the
                                                                                   world, twist in its own frame, angular first
     ``contact.<name>.force``                                ``(samples, 3)``      of the ground on a contact, world axes [N]; these

@@ -237,6 +237,9 @@ impl Dynamics {
     /// # Errors
     /// A slice that does not fit the model, and loads under which no equilibrium is found.
     pub fn settle(&mut self, q: &mut [f64], ext: External<f64>) -> Result<(), Error> {
+        if self.modes() == 0 {
+            return Ok(());
+        }
         let rest = vec![0.0; self.nv()];
         self.settle_in_motion(q, &rest, &rest, ext)
     }

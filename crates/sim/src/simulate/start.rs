@@ -85,6 +85,7 @@ pub(super) fn initial_state(
     hang(dynamics, loads, &mut state.q, &eta)?;
     let first = state.qd.len() - etad.len();
     state.qd[first..].iter_mut().zip(&etad).for_each(|(rate, given)| *rate = given.unwrap_or(0.0));
+    state.thetad[first..].copy_from_slice(&state.qd[first..]);
     loads.update(dynamics, &state.q)?;
     let mut tau = vec![0.0; dynamics.nv()];
     let mut equilibrium = Equilibrium::new(dynamics.nv());

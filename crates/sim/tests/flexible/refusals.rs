@@ -58,9 +58,8 @@ fn controllers_that_know_no_bending_are_refused_by_name() {
 }
 
 #[test]
-fn ground_and_factors_on_masses_are_refused() {
+fn ground_is_refused() {
     refused("duration: 1\nground: {friction: 0.5}\n", &["flexible_links.upper", "holds a robot", "`ground`"]);
-    refused("duration: 1\nplant: {mass: 1.1}\n", &["flexible_links.upper", "a factor on masses"]);
 }
 
 #[test]
