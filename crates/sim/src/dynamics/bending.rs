@@ -7,7 +7,7 @@ use gyroflex::dynamics::{
     FlexibleStation, Forward, Inverse, State,
 };
 use gyroflex::integrate::{self, StateMut};
-use gyroflex::model::{FlexibleModel, JointKind};
+use gyroflex::model::{FlexibleModel, JointKind, Model, SizeError};
 use gyroflex::spatial::{Motion, Transform};
 use gyroflex::{Jet, Scalar};
 use nalgebra::{DMatrix, DVector};
@@ -452,8 +452,8 @@ impl Dynamics {
         q: &[f64],
         v: &[f64],
         out: &mut [f64],
-        joints: fn(&gyroflex::model::Model<f64>, &[f64], &[f64], &mut [f64]) -> Result<(), gyroflex::model::SizeError>,
-        mode: fn(f64, f64) -> f64,
+        joints: impl Fn(&Model<f64>, &[f64], &[f64], &mut [f64]) -> Result<(), SizeError>,
+        mode: impl Fn(f64, f64) -> f64,
     ) -> Result<(), Error> {
         let n = self.modes();
         let split = |len: usize| len.saturating_sub(n);
