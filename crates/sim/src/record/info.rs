@@ -127,6 +127,7 @@ mod tests {
             payload: None,
             contacts: Vec::new(),
             held: Vec::new(),
+            flexible: crate::flexible::Flexible::default(),
         }
     }
 

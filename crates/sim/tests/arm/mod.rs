@@ -27,6 +27,7 @@ pub(crate) fn arm(floating: bool) -> Robot {
         payload: None,
         contacts: Vec::new(),
         held: Vec::new(),
+        flexible: gyroflex_sim::flexible::Flexible::default(),
     };
     let mut parent = None;
     if floating {

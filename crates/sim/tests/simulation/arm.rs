@@ -48,6 +48,7 @@ pub fn arm(n: usize) -> Robot {
         payload: None,
         contacts: Vec::new(),
         held: Vec::new(),
+        flexible: gyroflex_sim::flexible::Flexible::default(),
     };
     for i in 0..n {
         let parent = i.checked_sub(1);
