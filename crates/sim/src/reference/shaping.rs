@@ -95,12 +95,29 @@ fn linearized(
 /// that bend.
 fn hold_motors(linear: &mut Linearization, linearizer: &Linearizer, robot: &Robot) {
     let half = linearizer.layout().positions();
+    if linearizer.layout().modes() > 0 {
+        stop_motors(linear, linearizer, robot);
+    }
     let moves =
         |k: &usize| linearizer.layout().elastic().contains(k) || robot.bodies.get(*k).is_none_or(|b| b.drive.is_none());
     let positions: Vec<usize> = (0..linearizer.layout().nv()).filter(moves).collect();
     let kept: Vec<usize> = positions.iter().copied().chain(positions.iter().map(|k| half + k)).collect();
     linear.a = linear.a.select_rows(&kept).select_columns(&kept);
     linear.states = kept.iter().map(|k| linear.states[*k].clone()).collect();
+}
+
+/// Lets every motor exert what keeps it from accelerating: `A − B_h (C_h B_h)⁻¹ C_h A`, `C_h` the rows of the held motors' accelerations. Where
+/// links bend, a joint that moves with its motor would else give way to them.
+fn stop_motors(linear: &mut Linearization, linearizer: &Linearizer, robot: &Robot) {
+    let layout = linearizer.layout();
+    let driven = |k: &usize| robot.bodies.get(*k).is_some_and(|b| b.drive.is_some());
+    let inputs = layout.inputs().iter().enumerate().filter(|(_, k)| driven(k));
+    let (columns, rows): (Vec<usize>, Vec<usize>) =
+        inputs.map(|(column, k)| (column, layout.positions() + layout.motor(*k))).unzip();
+    let b = linear.b.select_columns(&columns);
+    if let Some(torque) = b.select_rows(&rows).lu().solve(&linear.a.select_rows(&rows)) {
+        linear.a -= b * torque;
+    }
 }
 
 /// Damping ratios nearer to zero than this are zero.

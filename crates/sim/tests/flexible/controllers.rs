@@ -31,9 +31,10 @@ fn a_stiff_link_moves_as_a_rigid_one() {
         }
         robot
     };
-    let end = |robot: &gyroflex_sim::Robot| run(robot, text).2.state().q[..3].to_vec();
-    let rigid = end(&robot.with_rigid_links());
-    let error = |factor: f64| end(&stiffer(factor)).iter().zip(&rigid).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let end = |robot: &gyroflex_sim::Robot, text: &str| run(robot, text).2.state().q[..3].to_vec();
+    let rigid = end(&robot.with_rigid_links(), &text.replace(", eta: [0, 0, 0, 0, 0, 0]", ""));
+    let error =
+        |factor: f64| end(&stiffer(factor), text).iter().zip(&rigid).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let (soft, stiff) = (error(100.0), error(1000.0));
     assert!(stiff < 0.2 * soft && stiff < 1e-3, "{soft} {stiff}");
 }

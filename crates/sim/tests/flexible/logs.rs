@@ -53,7 +53,7 @@ fn a_log_holds_modes_and_tips_and_gives_them_back() {
 #[test]
 fn the_frame_of_a_joint_beyond_a_bent_link_is_where_the_tip_is() {
     let robot = tree("rigid", 0.0, false);
-    let text = format!("{RUN}").replace("initial: {", "initial: {q: [0, 0, 0], eta: [0.01, 0, 0, 0, 0, 0], ");
+    let text = RUN.replace("initial: {", "initial: {q: [0, 0, 0], eta: [0.01, 0, 0, 0, 0, 0], ");
     let (_, table, simulation) = run(&robot, &text);
     let at = |name: &str| table.get(name).unwrap()[0];
     assert_eq!(simulation.initial_state().q[3], 0.01);

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use gyroflex::spatial::{Mat3, Transform, Vec3};
+use gyroflex_sim::bending::Tip;
 use gyroflex_sim::record::{Footing, Impact, RunInfo, Sample, Struck, Touch};
 use std::path::PathBuf;
 
@@ -17,6 +18,9 @@ pub fn info() -> RunInfo {
         floating: true,
         held: true,
         contacts: vec!["foot".to_owned()],
+        modes: ["upper_arm.bending_y1", "upper_arm.torsion1"].map(str::to_owned).to_vec(),
+        turning: vec![false, true],
+        tips: vec!["upper_arm".to_owned()],
         urdf: "<robot name=\"made up\"/>".to_owned(),
         attachments: vec![pair("robot.urdf", "<robot name=\"made up\"/>"), pair("scenario.yaml", "duration: 1.0\n")],
         metadata: vec![pair("model", "complete"), pair("step", "0.0001")],
@@ -63,6 +67,10 @@ pub fn sample(k: usize) -> Sample {
             zero_moment_point: [6.7, 6.8].map(wave),
             drift: wave(6.9).abs(),
         }),
+        eta: [9.0, 9.1].map(wave).to_vec(),
+        etad: [9.2, 9.3].map(wave).to_vec(),
+        etadd: [9.4, 9.5].map(wave).to_vec(),
+        tips: vec![Tip { displacement: [9.6, 9.7, 9.8].map(wave), rotation: [9.9, 10.0, 10.1].map(wave) }],
         frames: vec![
             pose([0.0, 0.0, 1.0], 7.0 * t),
             pose([1.0, -2.0, 0.5], half_turn + t),

@@ -72,6 +72,13 @@ class Checker:
         self.equal("footing", message.HasField("footing"), held)
         if held:
             self.footing(row, message.footing)
+        for mode in message.modes:
+            for key in ("eta", "etad", "etadd"):
+                self.column(row, f"{key}.{mode.name}", getattr(mode, key))
+        for tip in message.tips:
+            for axis in "xyz":
+                self.column(row, f"tip.{tip.link}.{axis}", getattr(tip.displacement, axis))
+                self.column(row, f"tip.{tip.link}.r{axis}", getattr(tip.rotation, axis))
 
     def footing(self, row, footing):
         for contact in footing.contacts:
