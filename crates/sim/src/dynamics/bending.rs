@@ -47,6 +47,9 @@ impl<T: Scalar> Storage<T> {
     }
 }
 
+/// A function of the core over positions and velocities of joints.
+type OverJoints = fn(&Model<f64>, &[f64], &[f64], &mut [f64]) -> Result<(), SizeError>;
+
 /// What a robot needs once its links bend.
 #[derive(Clone, Debug)]
 pub(super) struct Bending {
@@ -452,8 +455,8 @@ impl Dynamics {
         q: &[f64],
         v: &[f64],
         out: &mut [f64],
-        joints: impl Fn(&Model<f64>, &[f64], &[f64], &mut [f64]) -> Result<(), SizeError>,
-        mode: impl Fn(f64, f64) -> f64,
+        joints: OverJoints,
+        mode: fn(f64, f64) -> f64,
     ) -> Result<(), Error> {
         let n = self.modes();
         let split = |len: usize| len.saturating_sub(n);
