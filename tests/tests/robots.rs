@@ -14,9 +14,12 @@ fn robot(file: &str) -> Robot {
     load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-const ALL: [&str; 12] = [
+const ALL: [&str; 15] = [
     "biped5/robot.yaml",
     "biped5_elastic/robot.yaml",
+    "book_two_link/robot.yaml",
+    "book_two_link/elastic.yaml",
+    "deluca_siciliano/robot.yaml",
     "four_bar/robot.yaml",
     "iiwa14/robot.yaml",
     "iiwa14/lossless.yaml",

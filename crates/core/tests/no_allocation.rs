@@ -5,6 +5,8 @@ use common::{Lowered, drive, elastic, link};
 use gyroflex::Jet;
 use gyroflex::control::reference::*;
 use gyroflex::control::*;
+// Models have modes, too.
+use gyroflex::control::Mode;
 use gyroflex::control::{FeedbackLinearization, LinearizationScratch, Motors, Pd, TwoDof, TwoDofScratch};
 use gyroflex::dynamics::*;
 use gyroflex::integrate::*;

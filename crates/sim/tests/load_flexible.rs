@@ -6,6 +6,7 @@ use gyroflex_sim::error::{Error, ErrorKind};
 use gyroflex_sim::flexible::{Flexure, Place};
 use gyroflex_sim::load::{LoadOptions, load, load_urdf_text};
 use gyroflex_sim::robot::Robot;
+use nalgebra::DMatrix;
 use std::path::Path;
 
 /// An arm of two turning links, a flange and a sensor fixed on the way, and a finger on the flange.
@@ -434,4 +435,40 @@ fn rigidly_geared_rotors_far_from_their_joints_are_refused() {
     assert_eq!((e.file.as_str(), e.element.as_str()), ("robot.yaml:4", "drives.grip.rotor.mount"), "{e}");
     assert!(e.problem.contains("gear is rigid") && e.remedy.contains("parent link"), "{e}");
     assert!(drive("{stiffness: 100}").is_ok());
+}
+
+#[test]
+fn free_modes_with_a_mass_at_their_tip_come_down_to_the_modes_of_the_loaded_beam() {
+    let (mass, inertia) = (0.9, 0.02);
+    let entry = |modes: &str, masses: &str| {
+        format!("length: 0.8, mass_per_length: 1.25, bending_y: {{stiffness: 10, {modes}}}, masses: [{masses}]")
+    };
+    let loaded =
+        upper(&entry(&format!("boundary: clamped_mass, tip: {{mass: {mass}, inertia: {inertia}}}, modes: 2"), ""));
+    let want: Vec<f64> = loaded.unwrap().flexible.links[0].modes.iter().map(|m| m.figures.frequency).collect();
+    let lump = format!("{{at: tip, mass: {mass}, inertia: {inertia}}}");
+    let mut before = [f64::INFINITY; 2];
+    for n in [2, 4, 8, 16] {
+        let robot = upper(&entry(&format!("modes: {n}"), &lump)).unwrap();
+        let tables = robot.flexible.tables();
+        let shape = |j: usize| (tables.shapes[j].displacement.y, tables.shapes[j].rotation.z);
+        let with_lump = DMatrix::from_fn(n, n, |j, k| {
+            let ((u, psi), (v, chi)) = (shape(j), shape(k));
+            tables.pairs[j * n + k].moments.trace() + mass * u * v + inertia * psi * chi
+        });
+        let stiffness = DMatrix::from_fn(n, n, |j, k| tables.pairs[j * n + k].stiffness);
+        // K η = ω² M η by the Cholesky factor of M.
+        let inverse = with_lump.cholesky().expect("it is positive").l().try_inverse().expect("it is triangular");
+        let mut squares: Vec<f64> =
+            (&inverse * stiffness * inverse.transpose()).symmetric_eigenvalues().as_slice().to_vec();
+        squares.sort_by(f64::total_cmp);
+        let found = [0, 1].map(|i| squares[i].sqrt() / (2.0 * std::f64::consts::PI));
+        for (i, is) in found.into_iter().enumerate() {
+            // Rayleigh and Ritz: from above, and the closer the more modes there are.
+            assert!(is > want[i] && is <= before[i], "{n} modes: {is} Hz, the beam has {} Hz", want[i]);
+        }
+        before = found;
+    }
+    // Slowly: free modes have no moment at the tip, and the loaded beam has one there.
+    before.iter().zip(&want).for_each(|(is, want)| close(is / want, 1.0, 0.05));
 }

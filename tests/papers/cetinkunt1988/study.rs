@@ -16,7 +16,7 @@ const EVERY: usize = 500;
 /// End of a run [s].
 const END: f64 = 2.0;
 /// Torques [N m]: forth in the first half second, back in the second, as the paper does not print its own.
-const TORQUES: [f64; 2] = [6.0, 2.0];
+const TORQUES: [f64; 2] = [3.0, 1.0];
 
 /// Joint angles over time, and how well the energy balance closes.
 pub struct Response {
@@ -32,13 +32,13 @@ pub struct Response {
 pub fn response(flexible: Option<(f64, &str)>) -> Result<Response, Error> {
     let beam = |link: &str, stiffness: f64, boundary: &str| {
         format!(
-            "  {link}:\n    length: 1.0\n    mass_per_length: 1.0\n    bending_y: {{stiffness: {stiffness}, boundary: {boundary}, modes: 2}}\n"
+            "  {link}:\n    length: 1.0\n    mass_per_length: 0.5\n    bending_y: {{stiffness: {stiffness}, boundary: {boundary}, modes: 2}}\n"
         )
     };
     let mut yaml = "urdf: book_two_link.urdf\ngravity: [0, 0, 0]\n".to_owned();
     if let Some((stiffness, boundary)) = flexible {
         yaml += "flexible_links:\n";
-        yaml += &["upper", "fore"].map(|link| beam(link, stiffness, boundary)).concat();
+        yaml += &["upper", "lower"].map(|link| beam(link, stiffness, boundary)).concat();
     }
     let robot = load_urdf_text(URDF, "book_two_link.urdf", Some(&yaml), &LoadOptions::default())?;
     let mut dynamics = Dynamics::new(robot.model(robot.fidelity)?);

@@ -7,9 +7,9 @@
 //! elastic joints (46) as the paper explains them term by term; [`AsPoints`] is the same arm as points for Lagrange's equations by automatic
 //! differentiation, which are what found the slips of the print:
 //!
-//! * (20.c) has index `j` in both factors; the second is `k`: `C_2i,j,k = ∫ φ_j φ_kᵀ dm`.
-//! * (19), (32.b) and (33) then need `C_2i,k,j` where they print `C_2i,j,k` beside `q_2i,k q̇_2i,j`, `C_s,k,t` for `C_s,t,k`, and
-//!   `C_p,k,r` for `C_p,r,k`: of `∫ h ḣᵀ` the first factor has the deflection. Only traces with the same matrix on both sides do not mind.
+//! * (20.c) has index `j` in both factors. With `k` in the second, `C_2i,j,k = ∫ φ_j φ_kᵀ dm` as here, (19), (32.b) and (33) need
+//!   `C_2i,k,j` where they print `C_2i,j,k` beside `q_2i,k q̇_2i,j`, `C_s,k,t` for `C_s,t,k`, and `C_p,k,r` for `C_p,r,k`: in
+//!   `∫ h ḣᵀ` the first factor has the deflection. With `k` in the first, they are right as printed.
 //! * (22), (23), (34): with `g = (0, 0, −9.81)` of (24) gravity's potential is `−gᵀ …`.
 //! * (27), (29.b), (29.c): bending along `z` takes the section's moment about `y`, and the other way round.
 //! * (31): the first sum ends at `2N`, not `2n`.
