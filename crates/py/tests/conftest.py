@@ -92,17 +92,17 @@ def binary() -> Path:
 
 
 def random_state(robot: gyroflex.Robot, rng: np.random.Generator) -> dict[str, np.ndarray]:
-    """Positions and velocities of joints and motors, the latter near the former."""
-    joints = len(robot.joint_names)
+    """Positions and velocities of joints and motors, the latter near the former; links that bend are bent a little."""
+    joints, modes = len(robot.joint_names), len(robot.mode_names)
     angles = rng.uniform(-1.0, 1.0, joints)
     root = np.empty(0)
     if robot.floating:
         quaternion = rng.normal(size=4)
         root = np.concatenate([rng.normal(size=3), quaternion / np.linalg.norm(quaternion)])
     theta = np.zeros(robot.nv)
-    theta[robot.nv - joints :] = angles + rng.normal(scale=1e-3, size=joints)
+    theta[robot.nv - modes - joints : robot.nv - modes] = angles + rng.normal(scale=1e-3, size=joints)
     return {
-        "q": np.concatenate([root, angles]),
+        "q": np.concatenate([root, angles, rng.uniform(-1e-3, 1e-3, modes)]),
         "qd": rng.normal(size=robot.nv),
         "theta": theta,
         "thetad": rng.normal(size=robot.nv),

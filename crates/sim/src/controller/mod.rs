@@ -21,6 +21,7 @@ use gyroflex::spatial::Vec3;
 use inverse::Feedforward;
 use linearization::Linearization;
 use lqr::Lqr;
+use nalgebra::{DMatrix, DVector};
 pub use walking::Walking;
 
 /// A controller and what it remembers.
@@ -292,6 +293,15 @@ impl Control {
     /// For each joint, the largest motor torque so far, reflected [N m or N].
     pub fn peak_torque(&self) -> &[f64] {
         &self.peak
+    }
+
+    /// Torque per velocity of `joints` (by place), a row and a column each, where `inertia` is that of the robot over them.
+    pub(crate) fn velocity_feedback(&self, joints: &[usize], inertia: &DMatrix<f64>) -> DMatrix<f64> {
+        let gains = DMatrix::from_diagonal(&DVector::from_iterator(joints.len(), joints.iter().map(|i| self.kd[*i])));
+        match self.law {
+            Law::ComputedTorque { .. } => inertia * gains,
+            _ => gains,
+        }
     }
 
     /// Velocity gain over inertia as a motor sees it [1/s], `inertia` (one entry per joint) the reflected inertia; zero without

@@ -2,7 +2,9 @@
 
 use super::Simulation;
 use crate::error::{Error, ErrorKind, Warning};
+use crate::linearize::eigenvalues;
 use crate::scenario::fault;
+use nalgebra::DMatrix;
 
 /// Beyond this speed [rad/s or m/s] or position [rad or m] a run is taken to have diverged.
 const MAX_SPEED: f64 = 1e6;
@@ -63,6 +65,42 @@ impl Simulation {
                 });
             }
         }
+    }
+
+    /// The same where links bend: at once, a motor accelerates little more than what is at the root of its link, so that a loop that is
+    /// calm on the rigid robot may be too fast. Its rates are the eigenvalues of `K_d (M⁻¹)`, over the joints without an elastic transmission.
+    ///
+    /// # Errors
+    /// An inertia matrix that is not positive definite.
+    pub(super) fn check_controller_on_bending_links(&mut self) -> Result<(), Error> {
+        let Some(rate) = self.file.scenario.controller.rate().filter(|_| self.dynamics.modes() > 0) else {
+            return Ok(());
+        };
+        let nv = self.dynamics.nv();
+        let mut m = vec![0.0; nv * nv];
+        self.dynamics.mass_matrix(&self.initial.q, &mut m)?;
+        let m = DMatrix::from_row_slice(nv, nv, &m);
+        let model = self.dynamics.model();
+        let stiff: Vec<usize> =
+            (0..self.joints.len()).filter(|i| !model.bodies()[self.joints.joints[*i].body].is_elastic()).collect();
+        let places: Vec<usize> = stiff.iter().map(|i| self.joints.joints[*i].v).collect();
+        let (Some(mobility), false) = (m.clone().try_inverse(), stiff.is_empty()) else { return Ok(()) };
+        let block = |of: &DMatrix<f64>| of.select_rows(&places).select_columns(&places);
+        let loops = self.control.velocity_feedback(&stiff, &block(&m)) * block(&mobility);
+        let fastest = eigenvalues(&loops)?.iter().map(|l| l.norm()).fold(0.0, f64::max);
+        if fastest < 2.0 * rate {
+            return Ok(());
+        }
+        let joint = (0..stiff.len()).max_by(|a, b| loops[(*a, *a)].total_cmp(&loops[(*b, *b)])).unwrap_or(0);
+        self.warnings.push(Warning {
+            file: self.file.keys.locate("controller.kd"),
+            element: format!("controller.kd of joint `{}`", self.joints.joints[stiff[joint]].name),
+            message: format!(
+                "the links bend away under it, so that its loop answers at {fastest:.3e} 1/s, which a controller at {rate} Hz cannot \
+                 hold stable; lower `kd`, raise `rate`, or give the drive its rotor"
+            ),
+        });
+        Ok(())
     }
 
     /// Warns of wrenches that never act.

@@ -147,6 +147,7 @@ impl Simulation {
         };
         simulation.check_step()?;
         simulation.check_controller();
+        simulation.check_controller_on_bending_links()?;
         simulation.check_wrenches();
         simulation.setup_warnings = simulation.warnings.len();
         Ok(simulation)
