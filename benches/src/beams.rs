@@ -7,9 +7,9 @@ use gyroflex::dynamics::{
     flexible_aba, flexible_hybrid, flexible_matrix_len, flexible_rnea, flexible_shapes_len,
 };
 use gyroflex::model::{
-    Body, BodySpec, DriveSpec, Fidelity, FlexibleLink, FlexibleModel, FlexibleRecords, Friction, JointKind, Mode,
-    ModePair, MountSpec, RobotSpec, RotorBody, RotorSpec, Seat, SpringSpec, Station, StationShape, TransmissionError,
-    TransmissionSpec,
+    AssumedMode, Body, BodySpec, DriveSpec, Fidelity, FlexibleLink, FlexibleModel, FlexibleRecords, Friction,
+    JointKind, ModePair, MountSpec, RobotSpec, RotorBody, RotorSpec, Seat, SpringSpec, Station, StationShape,
+    TransmissionError, TransmissionSpec,
 };
 use gyroflex::spatial::{Mat3, Motion, SpatialInertia, SymMat3, Transform, Vec3};
 use std::f64::consts::PI;
@@ -165,7 +165,7 @@ fn arm<P: Scalar>(links: usize, n: usize, elastic: bool) -> FlexibleModel<'stati
 
     let dm = 1.0 / POINTS as f64;
     let sum = |f: &dyn Fn(f64) -> f64| (0..POINTS).map(|p| f((p as f64 + 0.5) * dm) * dm).sum::<f64>();
-    let mode = |j: usize| Mode {
+    let mode = |j: usize| AssumedMode {
         momentum: ey.scale(sum(&|x| shape(j, x).0)),
         moments: Mat3::outer(ex, ey.scale(sum(&|x| x * shape(j, x).0))),
     };
@@ -203,7 +203,7 @@ fn arm<P: Scalar>(links: usize, n: usize, elastic: bool) -> FlexibleModel<'stati
     FlexibleModel::new(
         gyroflex::model::Model::new(records.leak(), &[], spec.gravity.map(P::from_f64)),
         flexible.iter().map(FlexibleLink::cast).collect::<Vec<_>>().leak(),
-        modes.iter().map(Mode::cast).collect::<Vec<_>>().leak(),
+        modes.iter().map(AssumedMode::cast).collect::<Vec<_>>().leak(),
         pairs.iter().map(ModePair::cast).collect::<Vec<_>>().leak(),
         stations.iter().map(Station::cast).collect::<Vec<_>>().leak(),
         shapes.iter().map(StationShape::cast).collect::<Vec<_>>().leak(),

@@ -4,7 +4,7 @@ use gyroflex::dynamics::{
     External, FlexibleBody, FlexibleMode, FlexibleScratch, Forward, State, flexible_aba, flexible_energy,
 };
 use gyroflex::model::{
-    Body, BodySpec, Fidelity, FlexibleLink, FlexibleModel, FlexibleRecords, Friction, JointKind, Mode, ModePair,
+    AssumedMode, Body, BodySpec, Fidelity, FlexibleLink, FlexibleModel, FlexibleRecords, Friction, JointKind, ModePair,
     RobotSpec, Seat,
 };
 use gyroflex::spatial::{Mat3, SpatialInertia, SymMat3, Transform, Vec3};
@@ -41,7 +41,7 @@ fn with_beam<R>(use_it: impl FnOnce(&FlexibleModel<f64>) -> R) -> R {
         shortening: Vec3::zero(),
         shortening_moments: Mat3::zero(),
     };
-    let mode = Mode { momentum: y.scale(1.0 / 3.0), moments: Mat3::outer(x, y.scale(COUPLING)) };
+    let mode = AssumedMode { momentum: y.scale(1.0 / 3.0), moments: Mat3::outer(x, y.scale(COUPLING)) };
     let records = FlexibleRecords {
         links: &mut [FlexibleLink::new(0, 1, 0, false)],
         modes: &mut [mode],

@@ -5,8 +5,6 @@ use common::{Lowered, drive, elastic, link};
 use gyroflex::Jet;
 use gyroflex::control::reference::*;
 use gyroflex::control::*;
-// Models have modes, too.
-use gyroflex::control::Mode;
 use gyroflex::control::{FeedbackLinearization, LinearizationScratch, Motors, Pd, TwoDof, TwoDofScratch};
 use gyroflex::dynamics::*;
 use gyroflex::integrate::*;
@@ -119,7 +117,7 @@ fn no_algorithm_of_flexible_links_allocates() {
     let robot = Lowered::new(&specs, [0.0, -9.81, 0.0], Fidelity::Complete);
     let (x, y) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0));
     let mut links = [FlexibleLink::new(0, 1, 1, true)];
-    let mut modes = [gyroflex::model::Mode { momentum: y.scale(0.3), moments: Mat3::outer(x, y.scale(0.25)) }];
+    let mut modes = [gyroflex::model::AssumedMode { momentum: y.scale(0.3), moments: Mat3::outer(x, y.scale(0.25)) }];
     let mut pairs = [ModePair {
         moments: Mat3::outer(y, y.scale(0.2)),
         stiffness: 7.0,

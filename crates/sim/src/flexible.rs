@@ -2,7 +2,7 @@
 
 use crate::beam::{Beam, Boundary, Integrals, ModeFigures};
 use crate::robot::Link;
-use gyroflex::model::{FlexibleLink, FlexibleRecords, Mode, ModePair, Seat, Station, StationShape};
+use gyroflex::model::{AssumedMode, FlexibleLink, FlexibleRecords, ModePair, Seat, Station, StationShape};
 use gyroflex::spatial::{SpatialInertia, Transform, Vec3};
 
 /// All links of a robot that bend; none for most robots.
@@ -81,7 +81,7 @@ pub struct FlexibleTables {
     /// One per flexible link.
     pub links: Vec<FlexibleLink<f64>>,
     /// The modes of all links.
-    pub modes: Vec<Mode<f64>>,
+    pub modes: Vec<AssumedMode<f64>>,
     /// `n × n` per link.
     pub pairs: Vec<ModePair<f64>>,
     /// The stations of all links.

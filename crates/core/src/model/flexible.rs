@@ -39,7 +39,7 @@ pub struct FlexibleLink<T> {
 /// One mode of a flexible link, integrated over the mass that moves with it. `x` is measured from the link's origin, all in the
 /// link's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mode<T> {
+pub struct AssumedMode<T> {
     /// `∫ φ_j dm` (eq. 26) [kg].
     pub momentum: Vec3<T>,
     /// `∫ x φ_jᵀ dm` (eq. 20.b) [kg m].
@@ -101,7 +101,7 @@ pub struct Seat {
 pub struct FlexibleModel<'a, T> {
     pub(crate) rigid: Model<'a, T>,
     pub(crate) links: &'a [FlexibleLink<T>],
-    pub(crate) modes: &'a [Mode<T>],
+    pub(crate) modes: &'a [AssumedMode<T>],
     pub(crate) pairs: &'a [ModePair<T>],
     pub(crate) stations: &'a [Station<T>],
     pub(crate) shapes: &'a [StationShape<T>],
@@ -116,7 +116,7 @@ pub struct FlexibleRecords<'s> {
     /// One per flexible link, in the order of their bodies.
     pub links: &'s mut [FlexibleLink<f64>],
     /// `n` per link.
-    pub modes: &'s mut [Mode<f64>],
+    pub modes: &'s mut [AssumedMode<f64>],
     /// `n × n` per link, by rows.
     pub pairs: &'s mut [ModePair<f64>],
     /// Those of a link in any order.
@@ -135,7 +135,7 @@ impl<'a, T: Scalar> FlexibleModel<'a, T> {
     pub const fn new(
         rigid: Model<'a, T>,
         links: &'a [FlexibleLink<T>],
-        modes: &'a [Mode<T>],
+        modes: &'a [AssumedMode<T>],
         pairs: &'a [ModePair<T>],
         stations: &'a [Station<T>],
         shapes: &'a [StationShape<T>],
@@ -156,7 +156,7 @@ impl<'a, T: Scalar> FlexibleModel<'a, T> {
     }
 
     /// The modes' integrals.
-    pub fn mode_records(&self) -> &'a [Mode<T>] {
+    pub fn mode_records(&self) -> &'a [AssumedMode<T>] {
         self.modes
     }
 
@@ -283,10 +283,10 @@ impl FlexibleLink<f64> {
     }
 }
 
-impl Mode<f64> {
+impl AssumedMode<f64> {
     /// The same mode in another scalar.
-    pub fn cast<U: Scalar>(&self) -> Mode<U> {
-        Mode { momentum: self.momentum.map(U::from_f64), moments: self.moments.map(U::from_f64) }
+    pub fn cast<U: Scalar>(&self) -> AssumedMode<U> {
+        AssumedMode { momentum: self.momentum.map(U::from_f64), moments: self.moments.map(U::from_f64) }
     }
 }
 

@@ -1,6 +1,6 @@
 //! From the user's link frames to those of the recursions: the records of flexible links.
 
-use super::{Defect, FlexibleLink, FlexibleModel, FlexibleRecords, Mode, Model, ModelError, RobotSpec, Seat};
+use super::{AssumedMode, Defect, FlexibleLink, FlexibleModel, FlexibleRecords, Model, ModelError, RobotSpec, Seat};
 use crate::spatial::{Mat3, SpatialInertia, SymMat3, Transform, Vec3};
 
 impl<'s> FlexibleRecords<'s> {
@@ -143,7 +143,7 @@ impl<'s> FlexibleRecords<'s> {
         let about_origin = |a: Mat3<f64>, sum: Vec3<f64>| Mat3::outer(frame.pos, sum) + tensor(a);
         for mode in &mut self.modes[link.mode_range()] {
             let momentum = vector(mode.momentum);
-            *mode = Mode { momentum, moments: about_origin(mode.moments, momentum) };
+            *mode = AssumedMode { momentum, moments: about_origin(mode.moments, momentum) };
         }
         for pair in &mut self.pairs[link.pair_range()] {
             pair.moments = tensor(pair.moments);

@@ -17,7 +17,7 @@ mod validate;
 pub use body::{Body, JointKind, Placement};
 pub use drive::{Drive, Elastic, Rotor, TransmissionError};
 pub use error::{Defect, ModelError};
-pub use flexible::{FlexibleLink, FlexibleModel, FlexibleRecords, Mode, ModePair, Seat, Station, StationShape};
+pub use flexible::{AssumedMode, FlexibleLink, FlexibleModel, FlexibleRecords, ModePair, Seat, Station, StationShape};
 pub use friction::Friction;
 pub use model::{Model, SizeError};
 pub(crate) use piece::Piece;

@@ -3,7 +3,7 @@
 use super::profile::{Profile, pieces};
 use super::quadrature::composite;
 use super::shape::{BeamMode, Deflection, Inertia, Resistance, frequency, points_for};
-use gyroflex::model::{Mode, ModePair, StationShape};
+use gyroflex::model::{AssumedMode, ModePair, StationShape};
 use gyroflex::spatial::{Mat3, SpatialInertia, SymMat3, Transform, Vec3};
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
@@ -30,7 +30,7 @@ pub struct Beam {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Integrals {
     /// One per mode.
-    pub modes: Vec<Mode<f64>>,
+    pub modes: Vec<AssumedMode<f64>>,
     /// One per pair of modes, by rows.
     pub pairs: Vec<ModePair<f64>>,
     /// Inertia of the straight beam.
@@ -96,7 +96,7 @@ impl Beam {
     /// The integrals by quadrature with `points` on every piece between points of its tables, in the beam's axes about its root.
     pub fn integrals(&self, points: usize) -> Integrals {
         let n = self.modes.len();
-        let zero = Mode { momentum: Vec3::zero(), moments: Mat3::zero() };
+        let zero = AssumedMode { momentum: Vec3::zero(), moments: Mat3::zero() };
         let mut modes = vec![zero; n];
         let none = ModePair {
             moments: Mat3::zero(),
@@ -236,7 +236,7 @@ impl Integrals {
         let root = placement.point(Vec3::zero());
         let modes = self.modes.iter().map(|mode| {
             let momentum = turn * mode.momentum;
-            Mode { momentum, moments: Mat3::outer(root, momentum) + tensor(mode.moments) }
+            AssumedMode { momentum, moments: Mat3::outer(root, momentum) + tensor(mode.moments) }
         });
         let pairs = self.pairs.iter().map(|pair| {
             let shortening = turn * pair.shortening;
@@ -255,7 +255,7 @@ impl Integrals {
     /// Multiplies every mass by a factor; stiffness and damping stay.
     pub(crate) fn scale_mass(&mut self, factor: f64) {
         for mode in &mut self.modes {
-            *mode = Mode { momentum: mode.momentum.scale(factor), moments: mode.moments.scale(factor) };
+            *mode = AssumedMode { momentum: mode.momentum.scale(factor), moments: mode.moments.scale(factor) };
         }
         for pair in &mut self.pairs {
             pair.moments = pair.moments.scale(factor);

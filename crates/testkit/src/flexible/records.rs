@@ -4,8 +4,8 @@ use super::{BendingLink, Particle, Seats};
 use crate::Lowered;
 use gyroflex::Scalar;
 use gyroflex::model::{
-    Fidelity, FlexibleLink, FlexibleModel, FlexibleRecords, Mode, ModePair, ModelError, RobotSpec, Seat, Station,
-    StationShape,
+    AssumedMode, Fidelity, FlexibleLink, FlexibleModel, FlexibleRecords, ModePair, ModelError, RobotSpec, Seat,
+    Station, StationShape,
 };
 use gyroflex::spatial::{Mat3, Vec3};
 
@@ -14,7 +14,7 @@ use gyroflex::spatial::{Mat3, Vec3};
 pub struct LoweredFlexible<T> {
     rigid: Lowered<T>,
     links: Vec<FlexibleLink<T>>,
-    modes: Vec<Mode<T>>,
+    modes: Vec<AssumedMode<T>>,
     pairs: Vec<ModePair<T>>,
     stations: Vec<Station<T>>,
     shapes: Vec<StationShape<T>>,
@@ -48,7 +48,7 @@ impl<T: Scalar> LoweredFlexible<T> {
         Ok(Self {
             rigid: Lowered::new(spec, fidelity)?,
             links: r.links.iter().map(FlexibleLink::cast).collect(),
-            modes: r.modes.iter().map(Mode::cast).collect(),
+            modes: r.modes.iter().map(AssumedMode::cast).collect(),
             pairs: r.pairs.iter().map(ModePair::cast).collect(),
             stations: r.stations.iter().map(Station::cast).collect(),
             shapes: r.shapes.iter().map(StationShape::cast).collect(),
@@ -75,7 +75,7 @@ impl<T: Scalar> LoweredFlexible<T> {
 /// The records as a user writes them.
 struct Described {
     links: Vec<FlexibleLink<f64>>,
-    modes: Vec<Mode<f64>>,
+    modes: Vec<AssumedMode<f64>>,
     pairs: Vec<ModePair<f64>>,
     stations: Vec<Station<f64>>,
     shapes: Vec<StationShape<f64>>,
@@ -100,7 +100,7 @@ fn described(spec: &RobotSpec<'_>, links: &[BendingLink], seats: &[Seats]) -> De
         out.links.push(FlexibleLink::new(link.body as u16, n as u16, link.sections.len() as u16, link.stiffening));
         for j in 0..n {
             let phi = |p: &Particle| p.shapes.displacement[j];
-            out.modes.push(Mode {
+            out.modes.push(AssumedMode {
                 momentum: vectors(&link.cloud, phi),
                 moments: matrices(&link.cloud, |p| Mat3::outer(p.at, phi(p))),
             });

@@ -9,13 +9,13 @@
 use super::scratch::{FlexibleBody, FlexibleMode};
 use crate::Scalar;
 use crate::dynamics::aba_base::centripetal;
-use crate::model::{FlexibleLink, FlexibleModel, Mode, ModePair};
+use crate::model::{AssumedMode, FlexibleLink, FlexibleModel, ModePair};
 use crate::spatial::{Force, Mat3, SpatialInertia, SymMat3, Vec3};
 
 /// One link's own records and modal coordinates.
 pub(super) struct Deflected<'a, P, T> {
     link: &'a FlexibleLink<P>,
-    modes: &'a [Mode<P>],
+    modes: &'a [AssumedMode<P>],
     pairs: &'a [ModePair<P>],
     eta: &'a [T],
     etad: &'a [T],

@@ -2,7 +2,7 @@
 
 use super::across::Across;
 use super::link::Deflected;
-use super::scratch::{FlexibleBody, FlexibleScratch};
+use super::scratch::{FlexibleBody, FlexibleScratch, FlexibleStation};
 use super::station::move_station;
 use crate::Scalar;
 use crate::dynamics::aba_base::velocity_force;
@@ -64,14 +64,10 @@ impl<'a, T: Scalar> Known<'a, T> {
         &self,
         i: usize,
         scratch: &FlexibleScratch<T>,
-        of: (impl Fn(&super::FlexibleStation<T>) -> X, impl Fn(&FlexibleBody<T>) -> X),
+        of: (impl Fn(&FlexibleStation<T>) -> X, impl Fn(&FlexibleBody<T>) -> X),
         world: X,
     ) -> X {
-        match (self.model.seats[i].parent, self.model.rigid.bodies[i].parent()) {
-            (Some(station), _) => of.0(&scratch.stations[usize::from(station)]),
-            (None, Some(body)) => of.1(&scratch.bodies[body]),
-            (None, None) => world,
-        }
+        of_frame(self.model.seats[i].parent, self.model.rigid.bodies[i].parent, scratch, of, world)
     }
 
     /// The same of the frame that carries the rotor of body `i`'s joint.
@@ -79,14 +75,10 @@ impl<'a, T: Scalar> Known<'a, T> {
         &self,
         i: usize,
         scratch: &FlexibleScratch<T>,
-        of: (impl Fn(&super::FlexibleStation<T>) -> X, impl Fn(&FlexibleBody<T>) -> X),
+        of: (impl Fn(&FlexibleStation<T>) -> X, impl Fn(&FlexibleBody<T>) -> X),
         world: X,
     ) -> X {
-        match (self.model.seats[i].rotor, self.model.rigid.bodies[i].carrier()) {
-            (Some(station), _) => of.0(&scratch.stations[usize::from(station)]),
-            (None, Some(body)) => of.1(&scratch.bodies[usize::from(body)]),
-            (None, None) => world,
-        }
+        of_frame(self.model.seats[i].rotor, self.model.rigid.bodies[i].carrier(), scratch, of, world)
     }
 
     /// Velocities of bodies and stations and what they need for them; motor and spring torques are not part of it.
@@ -159,5 +151,19 @@ impl<'a, T: Scalar> Known<'a, T> {
             let bent = columns.iter().zip(modes).fold(station.c, |sum, (column, mode)| sum + column.scale(mode.etadd));
             station.a = station.x.motion(a) + bent;
         }
+    }
+}
+
+fn of_frame<T: Scalar, X>(
+    station: Option<u16>,
+    body: Option<u16>,
+    scratch: &FlexibleScratch<T>,
+    (of_station, of_body): (impl Fn(&FlexibleStation<T>) -> X, impl Fn(&FlexibleBody<T>) -> X),
+    world: X,
+) -> X {
+    match (station, body) {
+        (Some(station), _) => of_station(&scratch.stations[usize::from(station)]),
+        (None, Some(body)) => of_body(&scratch.bodies[usize::from(body)]),
+        (None, None) => world,
     }
 }
