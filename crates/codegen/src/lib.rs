@@ -11,6 +11,7 @@
 pub mod emit;
 pub mod function;
 pub mod graph;
+pub mod optimise;
 pub mod program;
 pub mod quantity;
 pub mod robot;

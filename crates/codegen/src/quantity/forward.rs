@@ -5,7 +5,7 @@ use crate::function::Function;
 use crate::robot::{Records, Robot};
 use crate::sym::Sym;
 use gyroflex::dynamics::{
-    AbaScratch, External, Forward, JointSpaceScratch, State, aba, forward_in_joint_space, matrix_len,
+    AbaScratch, External, Forward, JointSpaceScratch, State, aba, forward_in_joint_space,
 };
 use gyroflex::model::Model;
 
@@ -13,7 +13,7 @@ use gyroflex::model::Model;
 pub(super) fn forward(robot: &Robot) -> Function {
     let by_matrix = by(robot, |model, state, tau, out| {
         let mut scratch = vec![JointSpaceScratch::new(); model.bodies().len()];
-        let mut matrix = zeros(matrix_len(model));
+        let mut matrix = zeros(model.nv() * model.nv());
         forward_in_joint_space(model, state, tau, External::none(), &mut scratch, &mut matrix, out)
             .expect("lengths are the model's");
     });
