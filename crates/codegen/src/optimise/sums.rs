@@ -26,7 +26,7 @@ pub(super) fn factored(function: &Function) -> Function {
     for i in 0..old.len() {
         let id = Id(i as u32);
         // What a sum or a product takes in is written there.
-        if reached[i] && !at.is_taken_in(id, function, &reached) {
+        if reached[i] && !at.is_taken_in(id) {
             at.image[i] = Some(at.written(id));
         }
     }
@@ -50,8 +50,9 @@ struct Rewriting<'a> {
 
 impl Rewriting<'_> {
     /// Whether the only use of an expression is a sum or a product that opens it.
-    fn is_taken_in(&self, id: Id, _function: &Function, _reached: &[bool]) -> bool {
-        self.uses[id.index()] == 1 && matches!(self.old.node(id), Node::Add(..) | Node::Sub(..) | Node::Neg(_) | Node::Mul(..)) 
+    fn is_taken_in(&self, id: Id) -> bool {
+        let opened = matches!(self.old.node(id), Node::Add(..) | Node::Sub(..) | Node::Neg(_) | Node::Mul(..));
+        opened && self.uses[id.index()] == 1
     }
 
     /// The new expression of an old one.
@@ -59,7 +60,7 @@ impl Rewriting<'_> {
         match self.old.node(id) {
             Node::Add(..) | Node::Sub(..) | Node::Neg(_) | Node::Mul(..) => {
                 let mut terms = Vec::new();
-                self.collect(id, 1.0, &mut terms);
+                self.open(id, 1.0, &mut terms, true);
                 let sum = self.sum(terms);
                 self.value(sum)
             }
@@ -69,7 +70,9 @@ impl Rewriting<'_> {
                     *slot = Some((operand, self.of(operand)));
                 }
                 let map = |id: Id| operands.iter().flatten().find(|(old, _)| *old == id).expect("an operand").1;
-                self.new.rebuild(node, map)
+                let id = self.new.rebuild(node, map);
+                self.note();
+                id
             }
         }
     }
@@ -86,11 +89,7 @@ impl Rewriting<'_> {
         }
     }
 
-    /// Terms of `coefficient · id`: sums that nothing else uses are opened.
-    fn collect(&mut self, id: Id, coefficient: f64, terms: &mut Vec<Term>) {
-        self.open(id, coefficient, terms, true);
-    }
-
+    /// Terms of `coefficient · id`: sums that nothing else uses are opened, and the `first` one.
     fn open(&mut self, id: Id, coefficient: f64, terms: &mut Vec<Term>, first: bool) {
         if !first && self.uses[id.index()] != 1 {
             let of = self.of(id);
@@ -127,7 +126,7 @@ impl Rewriting<'_> {
         }
     }
 
-    /// Factors of a product: products that nothing else uses are opened.
+    /// Factors of a product: products that nothing else uses are opened, and the `first` one.
     fn factors(&mut self, id: Id, term: &mut Term, first: bool) {
         match self.old.node(id) {
             Node::Mul(a, b) if first || self.uses[id.index()] == 1 => {
@@ -165,7 +164,8 @@ impl Rewriting<'_> {
         distinct.retain(|term| term.coefficient != 0.0);
         let mut parts: Vec<(f64, Id)> = Vec::new();
         while let Some(factor) = most_common(&distinct) {
-            let (mut inside, rest): (Vec<Term>, Vec<Term>) = distinct.into_iter().partition(|t| t.factors.contains(&factor));
+            let (mut inside, rest): (Vec<Term>, Vec<Term>) =
+                distinct.into_iter().partition(|t| t.factors.contains(&factor));
             distinct = rest;
             for term in &mut inside {
                 let at = term.factors.iter().position(|f| *f == factor).expect("it contains the factor");
@@ -187,14 +187,17 @@ impl Rewriting<'_> {
         id
     }
 
+    fn number(&mut self, x: f64) -> Id {
+        let id = self.new.constant(x);
+        self.note();
+        id
+    }
+
     /// A product, what is ready first multiplied first.
     fn product(&mut self, mut factors: Vec<Id>) -> Id {
         if factors.is_empty() {
-            let one = self.new.constant(1.0);
-            self.note();
-            return one;
+            return self.number(1.0);
         }
-        self.note();
         while factors.len() > 1 {
             factors.sort_by_key(|f| std::cmp::Reverse((self.depth[f.index()], f.index())));
             let (a, b) = (factors.pop().expect("two"), factors.pop().expect("two"));
@@ -206,11 +209,8 @@ impl Rewriting<'_> {
 
     /// `Σ c x` as a coefficient and an expression, what is ready first added first.
     fn add_up(&mut self, mut parts: Vec<(f64, Id)>) -> (f64, Id) {
-        self.note();
         if parts.is_empty() {
-            let zero = self.new.constant(0.0);
-            self.note();
-            return (1.0, zero);
+            return (1.0, self.number(0.0));
         }
         if let [one] = parts[..] {
             return one;
@@ -247,7 +247,7 @@ impl Rewriting<'_> {
         value
     }
 
-    /// Depths of nodes that have been made since.
+    /// Keeps the depth of the nodes that have been made since.
     fn note(&mut self) {
         for i in self.depth.len()..self.new.len() {
             let node = self.new.nodes()[i];

@@ -4,9 +4,7 @@ use super::tracing::{Tracing, traced, zeros};
 use crate::function::Function;
 use crate::robot::{Records, Robot};
 use crate::sym::Sym;
-use gyroflex::dynamics::{
-    AbaScratch, External, Forward, JointSpaceScratch, State, aba, forward_in_joint_space,
-};
+use gyroflex::dynamics::{AbaScratch, External, Forward, JointSpaceScratch, State, aba, forward_in_joint_space};
 use gyroflex::model::Model;
 
 /// Accelerations from state and motor torques.
