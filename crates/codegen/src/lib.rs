@@ -15,4 +15,5 @@ pub mod optimise;
 pub mod program;
 pub mod quantity;
 pub mod robot;
+pub mod split;
 pub mod sym;
