@@ -2,12 +2,14 @@
 
 mod analyze;
 mod bench;
+mod codegen;
 mod compare;
 mod inverse;
 mod linear;
 
 pub use analyze::Analyze;
 pub use bench::Bench;
+pub use codegen::{Codegen, LanguageName};
 pub use compare::Compare;
 pub use inverse::Inverse;
 pub use linear::{Frf, Linearize, Modes, Pose};
@@ -50,6 +52,7 @@ pub enum Command {
     Compare(Compare),
     Bench(Bench),
     Export(Export),
+    Codegen(Codegen),
     Schema(Schema),
     Completions(Completions),
 }

@@ -5,6 +5,7 @@ pub mod batch;
 pub mod beam;
 pub mod bench;
 pub mod bending;
+pub mod codegen;
 pub mod compare;
 pub mod contact;
 pub mod controller;

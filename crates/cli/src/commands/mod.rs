@@ -2,6 +2,7 @@
 
 pub mod analyze;
 pub mod bench;
+pub mod codegen;
 pub mod compare;
 pub mod completions;
 pub mod eval;
