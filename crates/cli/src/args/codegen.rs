@@ -25,6 +25,12 @@ pub struct Codegen {
     /// The language
     #[arg(long, value_enum, default_value_t = LanguageName::Rust)]
     pub lang: LanguageName,
+    /// A parameter that stays an argument of the code, such as link6.mass, payload.mass, joint2.stiffness; may be repeated
+    #[arg(long, value_name = "PARAMETER")]
+    pub keep_symbol: Vec<String>,
+    /// The link whose Jacobian is generated [default: the last that moves]
+    #[arg(long, value_name = "LINK")]
+    pub link: Option<String>,
     /// Which physics of the motors to keep [default: as the robot says]
     #[arg(long)]
     pub model: Option<ModelName>,

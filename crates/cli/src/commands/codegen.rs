@@ -18,6 +18,8 @@ pub fn run(args: &Codegen, quiet: bool) -> Result<(), Failure> {
             Scalar::F64 => Precision::Double,
         },
         fidelity: args.model.map(Into::into),
+        kept: args.keep_symbol.clone(),
+        link: args.link.clone(),
         stem: args.name.clone(),
     };
     let stop = stop_flag(quiet, "end the generation");

@@ -1,7 +1,8 @@
 //! Arguments and outputs while a function is traced.
 
+use super::Options;
 use crate::function::{Argument, Function, Output};
-use crate::robot::Robot;
+use crate::robot::{Parameter, Records, Robot};
 use crate::sym::{Sym, trace};
 use gyroflex::Scalar;
 use gyroflex::dynamics::State;
@@ -16,10 +17,10 @@ pub(super) struct Tracing {
 
 /// A state in symbols.
 pub(super) struct SymbolicState {
-    q: Vec<Sym>,
-    qd: Vec<Sym>,
-    theta: Vec<Sym>,
-    thetad: Vec<Sym>,
+    pub(super) q: Vec<Sym>,
+    pub(super) qd: Vec<Sym>,
+    pub(super) theta: Vec<Sym>,
+    pub(super) thetad: Vec<Sym>,
 }
 
 impl SymbolicState {
@@ -40,17 +41,49 @@ impl Tracing {
 
     /// An argument of motors: of a robot without elastic joints it is none, and nothing depends on what is returned.
     pub(super) fn of_motors(&mut self, robot: &Robot, name: &str, meaning: &str) -> Vec<Sym> {
-        if robot.is_elastic() { self.argument(name, robot.nv(), meaning) } else { vec![Sym::zero(); robot.nv()] }
+        if robot.is_elastic() { self.argument(name, robot.nv(), meaning) } else { zeros(robot.nv()) }
+    }
+
+    /// Positions of the joints, and of the modes of links that bend.
+    pub(super) fn positions(&mut self, robot: &Robot) -> Vec<Sym> {
+        let meaning = match robot.flexible {
+            Some(_) => "joint positions [rad or m], then modal coordinates [m]",
+            None => "joint positions [rad or m]",
+        };
+        self.argument("q", robot.nq(), meaning)
     }
 
     /// Positions and velocities of joints and motors.
     pub(super) fn state(&mut self, robot: &Robot) -> SymbolicState {
         SymbolicState {
-            q: self.argument("q", robot.nq(), "joint positions [rad or m]"),
+            q: self.positions(robot),
             qd: self.argument("qd", robot.nv(), "joint velocities [rad/s or m/s]"),
             theta: self.of_motors(robot, "theta", "motor positions, reflected [rad or m]"),
             thetad: self.of_motors(robot, "thetad", "motor velocities, reflected [rad/s or m/s]"),
         }
+    }
+
+    /// The same without motor positions, for what does not depend on them.
+    pub(super) fn moving(&mut self, robot: &Robot) -> SymbolicState {
+        SymbolicState {
+            q: self.positions(robot),
+            qd: self.argument("qd", robot.nv(), "joint velocities [rad/s or m/s]"),
+            theta: zeros(robot.nv()),
+            thetad: self.of_motors(robot, "thetad", "motor velocities, reflected [rad/s or m/s]"),
+        }
+    }
+
+    /// The robot's records. What is kept of its parameters is the last argument.
+    pub(super) fn records(&mut self, robot: &Robot, options: &Options) -> Records {
+        let kept = &options.kept;
+        if kept.is_empty() {
+            return Records::keeping(robot, &[]);
+        }
+        let say = |p: &Parameter| format!("{} [{}], {} in the robot's description", p.name(), p.unit(), p.nominal());
+        let meaning = kept.iter().map(say).collect::<Vec<_>>().join("; ");
+        let symbols = self.argument("parameters", kept.len(), &meaning);
+        let kept: Vec<(Parameter, Sym)> = kept.iter().cloned().zip(symbols).collect();
+        Records::keeping(robot, &kept)
     }
 
     /// A vector of results.
@@ -59,7 +92,6 @@ impl Tracing {
     }
 
     /// A matrix of results, by rows.
-    #[expect(dead_code, reason = "matrices follow")]
     pub(super) fn matrix(&mut self, name: &str, entries: &[Sym], columns: usize, meaning: &str) {
         self.output(name, entries, entries.len().checked_div(columns).unwrap_or(0), Some(columns), meaning);
     }

@@ -1,11 +1,16 @@
-//! A robot's records in symbols.
+//! A robot to generate code for, and its records in symbols.
 
+mod bending;
+mod kept;
+mod parameter;
+mod records;
 mod regroup;
 
-use crate::sym::Sym;
-use gyroflex::Scalar;
-use gyroflex::model::{Body, Fidelity, FlexibleModel, Knot, Model, RobotSpec};
-use gyroflex::spatial::{SpatialInertia, Vec3};
+pub use parameter::{Parameter, UnknownParameter};
+pub use records::Records;
+
+use gyroflex::model::{Body, Fidelity, FlexibleModel, Model, RobotSpec};
+use gyroflex::spatial::SpatialInertia;
 
 /// A robot to generate code for: its description, the records of one of its models, and names.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +29,8 @@ pub struct Robot<'a> {
     pub model: Model<'a, f64>,
     /// The records of its links that bend, if any does.
     pub flexible: Option<FlexibleModel<'a, f64>>,
-    /// The load it carries: the body that carries it, and its inertia in that body's link frame.
+    /// The load it carries: the body that carries it, and its inertia in that body's link frame. The description has it in the
+    /// inertia of the body.
     pub payload: Option<(usize, SpatialInertia<f64>)>,
 }
 
@@ -43,35 +49,9 @@ impl Robot<'_> {
     pub fn is_elastic(&self) -> bool {
         self.model.bodies().iter().any(Body::is_elastic)
     }
-}
 
-/// The records of a robot: numbers, or symbols where a parameter is kept.
-#[derive(Clone, Debug)]
-pub struct Records {
-    bodies: Vec<Body<Sym>>,
-    knots: Vec<Knot<Sym>>,
-    gravity: Vec3<Sym>,
-}
-
-impl Records {
-    /// The records of a model, every number a constant. Made inside a trace.
-    pub fn of(model: &Model<f64>) -> Self {
-        Self {
-            bodies: model.bodies().iter().map(Body::cast).collect(),
-            knots: model.knots().iter().map(Knot::cast).collect(),
-            gravity: model.gravity().map(Sym::from_f64),
-        }
-    }
-
-    /// The same motion from fewer numbers; see [`regroup`](regroup::regroup). Energies, regressors and forces between links need
-    /// the records as they are.
-    pub fn regrouped(mut self) -> Self {
-        regroup::regroup(&mut self.bodies);
-        self
-    }
-
-    /// The view that the algorithms take.
-    pub fn view(&self) -> Model<'_, Sym> {
-        Model::new(&self.bodies, &self.knots, self.gravity)
+    /// Whether a body is a link that bends.
+    pub(crate) fn bends(&self, body: usize) -> bool {
+        self.flexible.is_some_and(|model| model.links().iter().any(|link| usize::from(link.body) == body))
     }
 }

@@ -2,7 +2,7 @@
 
 use gyroflex::model::Fidelity;
 use gyroflex_codegen::function::Function;
-use gyroflex_codegen::quantity::{Quantity, function};
+use gyroflex_codegen::quantity::{Options as Choices, Quantity, function};
 use gyroflex_codegen::robot::Robot;
 use gyroflex_testkit::Lowered;
 use gyroflex_testkit::random::{Options, RandomRobot};
@@ -30,7 +30,9 @@ pub fn functions(seed: u64) -> Vec<Function> {
         flexible: None,
         payload: None,
     };
-    [Quantity::Forward, Quantity::Inverse].map(|q| function(&robot, q).expect("every robot has them")).into()
+    [Quantity::Forward, Quantity::Inverse]
+        .map(|q| function(&robot, q, &Choices::default()).expect("every robot has them"))
+        .into()
 }
 
 /// Numbers for all inputs of a function, of size one.

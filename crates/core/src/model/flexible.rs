@@ -170,6 +170,21 @@ impl<'a, T: Scalar> FlexibleModel<'a, T> {
         self.stations
     }
 
+    /// How every mode moves every station, `n` for each station.
+    pub fn shapes(&self) -> &'a [StationShape<T>] {
+        self.shapes
+    }
+
+    /// `s_jk` at every station of a link with stiffening, `n × n` by rows for each [1/m].
+    pub fn shortenings(&self) -> &'a [Vec3<T>] {
+        self.shortenings
+    }
+
+    /// What every joint and its rotor sit on, one record per body.
+    pub fn seats(&self) -> &'a [Seat] {
+        self.seats
+    }
+
     /// Number of modal coordinates.
     pub fn modes(&self) -> usize {
         self.modes.len()

@@ -3,7 +3,7 @@
 mod report;
 mod request;
 
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
 use crate::robot::{OwnedModel, Robot};
 use gyroflex::model::Fidelity;
 use gyroflex_codegen::emit::{self, File, Head};
@@ -37,11 +37,12 @@ pub fn generate(
     let model = robot.model(fidelity)?;
     let names = Names::of(robot);
     let source = names.source(robot, &model);
-    let quantities = request.quantities(&source)?;
+    let options = request.options(robot, &source)?;
+    let quantities = request.quantities(robot, &source, &options)?;
     let steps = quantities.len() as f64;
     let mut functions: Vec<Function> = Vec::new();
     for (i, quantity) in quantities.into_iter().enumerate() {
-        let traced = quantity::function(&source, quantity).map_err(|e| unavailable(robot, &e.to_string()))?;
+        let traced = quantity::function(&source, quantity, &options).map_err(|e| request::unavailable(robot, e))?;
         if !progress((i as f64 + 0.5) / steps) {
             return Ok(None);
         }
@@ -87,14 +88,4 @@ impl Names {
 
 fn head(robot: &Robot, fidelity: Fidelity, request: &Request) -> Head {
     Head { robot: robot.name.clone(), model: fidelity.name().to_owned(), command: request.command(fidelity) }
-}
-
-fn unavailable(robot: &Robot, problem: &str) -> Error {
-    Error {
-        kind: ErrorKind::Model,
-        file: robot.sources.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", "),
-        element: "codegen".to_owned(),
-        problem: problem.to_owned(),
-        remedy: "leave it out; `--what all` generates what this robot has".to_owned(),
-    }
 }

@@ -1,0 +1,40 @@
+//! Scratch of the algorithms of links that bend.
+
+use crate::sym::Sym;
+use gyroflex::Scalar;
+use gyroflex::dynamics::{
+    FlexibleBody, FlexibleMode, FlexibleScratch, FlexibleStation, flexible_matrix_len, flexible_shapes_len,
+};
+use gyroflex::model::FlexibleModel;
+use gyroflex::spatial::Motion;
+
+/// What [`FlexibleScratch`] borrows.
+pub(super) struct Storage {
+    bodies: Vec<FlexibleBody<Sym>>,
+    stations: Vec<FlexibleStation<Sym>>,
+    modes: Vec<FlexibleMode<Sym>>,
+    shapes: Vec<Motion<Sym>>,
+    matrix: Vec<Sym>,
+}
+
+impl Storage {
+    pub(super) fn of(model: &FlexibleModel<Sym>) -> Self {
+        Self {
+            bodies: vec![FlexibleBody::new(); model.rigid().bodies().len()],
+            stations: vec![FlexibleStation::new(); model.stations().len()],
+            modes: vec![FlexibleMode::new(); model.modes()],
+            shapes: vec![Motion::zero(); flexible_shapes_len(model)],
+            matrix: vec![Sym::zero(); flexible_matrix_len(model)],
+        }
+    }
+
+    pub(super) fn lend(&mut self) -> FlexibleScratch<'_, Sym> {
+        FlexibleScratch {
+            bodies: &mut self.bodies,
+            stations: &mut self.stations,
+            modes: &mut self.modes,
+            shapes: &mut self.shapes,
+            matrix: &mut self.matrix,
+        }
+    }
+}
