@@ -22,24 +22,50 @@ pub fn of_scenario(
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Report, Error> {
     options.check()?;
+    let asked = file.scenario.model.filter(|m| *m != ModelName::Complete);
+    let Simulated { robot, motions, notes, interrupted_at } = simulated(robot, file, ModelName::Complete, progress)?;
+    let mut report = error::compare(&robot, &motions, options)?;
+    report.of = "scenario".to_owned();
+    report.file = Some(file.path.display().to_string());
+    if asked.is_some() {
+        report.notes.push("the scenario asks for another model; it was simulated with the complete one".to_owned());
+    }
+    if let Some(end) = interrupted_at {
+        report.notes.push(format!("interrupted: only the first {end} s were simulated"));
+    }
+    report.notes.extend(notes);
+    Ok(report)
+}
+
+/// The motion of a run.
+pub(crate) struct Simulated {
+    /// The robot that was simulated, with the scenario's changes.
+    pub(crate) robot: Robot,
+    /// One per sample of the log.
+    pub(crate) motions: Vec<Motion>,
+    /// Warnings of the run.
+    pub(crate) notes: Vec<String>,
+    /// When it ended too early [s], if it did.
+    pub(crate) interrupted_at: Option<f64>,
+}
+
+/// Simulates a scenario with a model of the caller's choice, and keeps its motion.
+pub(crate) fn simulated(
+    robot: &Robot,
+    file: &ScenarioFile,
+    model: ModelName,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<Simulated, Error> {
     refuse_floating(robot)?;
     let mut file = file.clone();
-    let asked = file.scenario.model.replace(ModelName::Complete);
+    file.scenario.model = Some(model);
     let mut simulation = Simulation::new(robot, &file)?;
     let mut memory = MemoryRecorder::new(simulation.run_info());
     let summary = simulation.run(&mut memory, progress)?;
-    let robot = simulation.robot();
-    let mut report = error::compare(robot, &motions(robot, &memory.table(), "")?, options)?;
-    report.of = "scenario".to_owned();
-    report.file = Some(file.path.display().to_string());
-    if asked.is_some_and(|m| m != ModelName::Complete) {
-        report.notes.push("the scenario asks for another model; it was simulated with the complete one".to_owned());
-    }
-    if summary.interrupted {
-        report.notes.push(format!("interrupted: only the first {} s were simulated", summary.end_time));
-    }
-    report.notes.extend(simulation.warnings().iter().map(ToString::to_string));
-    Ok(report)
+    let robot = simulation.robot().clone();
+    let motions = motions(&robot, &memory.table(), "")?;
+    let notes = simulation.warnings().iter().map(ToString::to_string).collect();
+    Ok(Simulated { robot, motions, notes, interrupted_at: summary.interrupted.then_some(summary.end_time) })
 }
 
 /// Analyses the motion in a log that `gyroflex simulate` has written.
