@@ -1,0 +1,10 @@
+//! Laws of everything that is generated: it is what the library computes.
+
+mod bending;
+mod derivatives;
+mod elastic;
+mod library;
+mod regrouped;
+mod rigid;
+mod subject;
+mod unavailable;
