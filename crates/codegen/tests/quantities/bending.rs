@@ -1,48 +1,22 @@
 //! Robots some of whose links bend.
 
 use super::library::{of_energy, of_poses};
+use super::scratch::Scratch;
 use super::subject::{DOUBLE, Known, SINGLE, Subject, bending_equals_library, grown_bending};
 use gyroflex::dynamics::*;
 use gyroflex::model::{Drive, Fidelity};
-use gyroflex::spatial::{Motion, Transform};
+use gyroflex::spatial::Transform;
 use gyroflex_codegen::function::Function;
 use gyroflex_codegen::quantity::Quantity;
 use gyroflex_testkit::random::RandomFlexible;
 use gyroflex_testkit::tolerance::{Real, assert_close_above, norm};
-
-/// Storage that the core's functions borrow.
-struct Scratch {
-    bodies: Vec<FlexibleBody<f64>>,
-    stations: Vec<FlexibleStation<f64>>,
-    modes: Vec<FlexibleMode<f64>>,
-    shapes: Vec<Motion<f64>>,
-    matrix: Vec<f64>,
-}
-
-impl Scratch {
-    fn of(s: &Subject) -> Self {
-        let model = s.robot().flexible.expect("a link bends");
-        Self {
-            bodies: vec![FlexibleBody::new(); s.bodies.len()],
-            stations: vec![FlexibleStation::new(); model.stations().len()],
-            modes: vec![FlexibleMode::new(); model.modes()],
-            shapes: vec![Motion::zero(); flexible_shapes_len(&model)],
-            matrix: vec![0.0; flexible_matrix_len(&model)],
-        }
-    }
-
-    fn lend(&mut self) -> FlexibleScratch<'_, f64> {
-        let Self { bodies, stations, modes, shapes, matrix } = self;
-        FlexibleScratch { bodies, stations, modes, shapes, matrix }
-    }
-}
 
 fn torques(s: &Subject, state: State<f64>, qdd: &[f64], thetadd: &[f64]) -> [Vec<f64>; 2] {
     let model = s.robot().flexible.expect("a link bends");
     let [mut tau_j, mut tau] = [(); 2].map(|()| vec![0.0; model.nv()]);
     let out = Inverse { tau_j: &mut tau_j, tau: &mut tau };
     let accel = Acceleration { qdd, thetadd };
-    flexible_rnea(&model, state, accel, External::none(), Scratch::of(s).lend(), out).expect("it fits");
+    flexible_rnea(&model, state, accel, External::none(), Scratch::of(&model).lend(), out).expect("it fits");
     [tau_j, tau]
 }
 
@@ -50,7 +24,7 @@ fn matrices(s: &Subject) -> [Vec<f64>; 2] {
     let model = s.robot().flexible.expect("a link bends");
     let [mut mass, mut coupling] = [(); 2].map(|()| vec![0.0; model.nv() * model.nv()]);
     let out = FlexibleMatrices { mass: &mut mass, coupling: &mut coupling };
-    flexible_mass_matrix(&model, &s.state.q, Scratch::of(s).lend(), out).expect("it fits");
+    flexible_mass_matrix(&model, &s.state.q, Scratch::of(&model).lend(), out).expect("it fits");
     [mass, coupling]
 }
 
@@ -77,7 +51,7 @@ fn generated_energies_of_bending_links_equal_library() {
     bending_equals_library(40, Quantity::Energy, |s| {
         let model = s.robot().flexible.expect("a link bends");
         let Energy { kinetic, gravity, elastic } =
-            flexible_energy(&model, s.at(), Scratch::of(s).lend()).expect("it fits");
+            flexible_energy(&model, s.at(), Scratch::of(&model).lend()).expect("it fits");
         of_energy(s, kinetic, gravity, elastic)
     });
 }
@@ -89,7 +63,7 @@ fn generated_placements_of_bending_links_equal_library() {
         let mut links = vec![Transform::identity(); s.bodies.len()];
         let mut stations = vec![Transform::identity(); model.stations().len()];
         let out = FlexiblePlacements { links: &mut links, stations: &mut stations };
-        flexible_placements(&model, &s.state.q, Scratch::of(s).lend(), out).expect("it fits");
+        flexible_placements(&model, &s.state.q, Scratch::of(&model).lend(), out).expect("it fits");
         let links = of_poses(&links, ["positions", "rotations"]);
         let stations = of_poses(&stations, ["station_positions", "station_rotations"]);
         links.into_iter().chain(stations).collect()
@@ -116,7 +90,7 @@ fn accelerates_as_the_library<T: Real>(s: &Subject, function: &Function, toleran
     let model = s.robot().flexible.expect("a link bends");
     let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![0.0; model.nv()]);
     let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
-    flexible_aba(&model, s.at(), &s.state.tau, External::none(), Scratch::of(s).lend(), out).expect("it fits");
+    flexible_aba(&model, s.at(), &s.state.tau, External::none(), Scratch::of(&model).lend(), out).expect("it fits");
     let got = s.evaluate::<T>(function, &[]);
     let got = |name: &str| got.iter().find(|(of, _)| of == name).map(|(_, x)| x.clone());
     let got_qdd = got("qdd").expect("it is there");

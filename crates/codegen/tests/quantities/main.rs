@@ -6,5 +6,6 @@ mod elastic;
 mod library;
 mod regrouped;
 mod rigid;
+mod scratch;
 mod subject;
 mod unavailable;
