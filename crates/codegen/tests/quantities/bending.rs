@@ -1,6 +1,6 @@
 //! Robots some of whose links bend.
 
-use super::library::{of_energy, of_poses};
+use super::library::{inertia, of_energy, of_poses, reflected};
 use super::scratch::Scratch;
 use super::subject::{DOUBLE, Known, SINGLE, Subject, bending_equals_library, grown_bending};
 use gyroflex::dynamics::*;
@@ -20,14 +20,6 @@ fn torques(s: &Subject, state: State<f64>, qdd: &[f64], thetadd: &[f64]) -> [Vec
     [tau_j, tau]
 }
 
-fn matrices(s: &Subject) -> [Vec<f64>; 2] {
-    let model = s.robot().flexible.expect("a link bends");
-    let [mut mass, mut coupling] = [(); 2].map(|()| vec![0.0; model.nv() * model.nv()]);
-    let out = FlexibleMatrices { mass: &mut mass, coupling: &mut coupling };
-    flexible_mass_matrix(&model, &s.state.q, Scratch::of(&model).lend(), out).expect("it fits");
-    [mass, coupling]
-}
-
 #[test]
 fn generated_inverse_dynamics_of_bending_links_equals_library() {
     bending_equals_library(40, Quantity::Inverse, |s| {
@@ -38,12 +30,17 @@ fn generated_inverse_dynamics_of_bending_links_equals_library() {
 
 #[test]
 fn generated_mass_matrix_of_bending_links_equals_library() {
-    bending_equals_library(40, Quantity::MassMatrix, |s| vec![Known::new("m", matrices(s)[0].clone())]);
+    bending_equals_library(40, Quantity::MassMatrix, |s| vec![Known::new("m", inertia(s)[0].clone())]);
 }
 
 #[test]
 fn generated_coupling_of_bending_links_equals_library() {
-    bending_equals_library(40, Quantity::Coupling, |s| vec![Known::new("s", matrices(s)[1].clone())]);
+    bending_equals_library(40, Quantity::Coupling, |s| vec![Known::new("s", inertia(s)[1].clone())]);
+}
+
+#[test]
+fn generated_reflected_inertia_of_bending_links_equals_library() {
+    bending_equals_library(20, Quantity::ReflectedInertia, reflected);
 }
 
 #[test]
@@ -96,7 +93,7 @@ fn accelerates_as_the_library<T: Real>(s: &Subject, function: &Function, toleran
     let got_qdd = got("qdd").expect("it is there");
     let got_thetadd = got("thetadd").unwrap_or(got_qdd.clone());
     let (asks, asked) = (torques(s, s.at(), &got_qdd, &got_thetadd), torques(s, s.at(), &qdd, &thetadd));
-    let sum = norm(&matrices(s)[0]) * norm(&qdd);
+    let sum = norm(&inertia(s)[0]) * norm(&qdd);
     let what = |of: &str| format!("forward dynamics, {of} in {}", T::NAME);
     assert_close_above(&what("torques on joints"), s, &asks[0], &asked[0], tolerance, sum);
     assert_close_above(&what("torques of motors"), s, &asks[1], &asked[1], tolerance, sum);

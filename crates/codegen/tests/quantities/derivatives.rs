@@ -2,18 +2,10 @@
 
 use super::library;
 use super::subject::{DOUBLE, SINGLE, Subject, equals_library, grown};
-use gyroflex::Scalar;
-use gyroflex::dynamics::{
-    AbaScratch, External, Forward, ForwardScratch, JointSpaceScratch, State, forward_dynamics, joint_space_len,
-    matrix_len,
-};
-use gyroflex::model::{Body, Fidelity};
-use gyroflex::spatial::Motion;
+use gyroflex::model::Fidelity;
 use gyroflex_codegen::function::Function;
 use gyroflex_codegen::graph::Id;
 use gyroflex_codegen::quantity::Quantity;
-use gyroflex_testkit::Dual;
-use gyroflex_testkit::dual::moving_positions;
 use gyroflex_testkit::random::{Options as Grown, RandomRobot};
 use gyroflex_testkit::tolerance::{Real, assert_close_above, norm};
 
@@ -47,9 +39,9 @@ fn compare<T: Real>(s: &Subject, function: &Function, tolerance: f64) {
 }
 
 /// Columns of accelerations, block by block: each is of a size of its own.
-fn assert_close_by_torque<T: Real>(s: &Subject, got: &[Vec<f64>; 2], want: &[Vec<f64>; 2], tolerance: f64) {
+pub fn assert_close_by_torque<T: Real>(s: &Subject, got: &[Vec<f64>; 2], want: &[Vec<f64>; 2], tolerance: f64) {
     let nv = s.state.qd.len();
-    let m = norm(&library::mass_matrix(s)[0].value);
+    let m = norm(&library::inertia(s)[0]);
     let columns = got[0].len() / nv;
     for block in 0..columns / nv {
         let cut = |all: &Vec<f64>| -> Vec<f64> {
@@ -66,7 +58,7 @@ fn assert_close_by_torque<T: Real>(s: &Subject, got: &[Vec<f64>; 2], want: &[Vec
 }
 
 /// Sizes of what derivatives of accelerations by `q, q̇, θ, θ̇, τ` are the sum of, beside which they may vanish.
-fn natural(s: &Subject) -> [f64; 5] {
+pub fn natural(s: &Subject) -> [f64; 5] {
     let speed = norm(&s.state.qd).max(norm(&s.state.thetad));
     let acceleration = norm(&s.gravity().to_array()).max(speed * speed);
     [acceleration, speed, acceleration, speed, 0.0]
@@ -149,87 +141,4 @@ fn derivatives_of_symbols_equal_the_analytical_ones_of_forward_dynamics() {
             }
         }
     }
-}
-
-/// Forward dynamics on numbers that move along one state or input after the other; a root that floats moves in its own frame,
-/// which the twist carries along: `ξ̇ = δv − v × ξ`.
-#[test]
-fn generated_linearization_is_the_motion_beside_the_state() {
-    for seed in 0..40 {
-        let robot = RandomRobot::new(seed, &Grown { bodies: 1..=6, ..grown() });
-        for fidelity in Fidelity::ALL {
-            let s = Subject::of(&robot, fidelity);
-            let function = s.function(Quantity::Linearization).expect("every robot has it");
-            let [(_, a), (_, b)] = <[_; 2]>::try_from(s.evaluate::<f64>(&function, &[])).expect("A and B");
-            let model = s.rigid.view();
-            let nv = model.nv();
-            let elastic: Vec<usize> = model.bodies().iter().filter(|b| b.is_elastic()).map(Body::v_index).collect();
-            let half = nv + elastic.len();
-            let inputs: Vec<usize> = model.bodies().iter().filter(|b| b.joint.nv() == 1).map(Body::v_index).collect();
-            let unit = |k: Option<usize>| (0..nv).map(|i| f64::from(Some(i) == k)).collect::<Vec<f64>>();
-            // Columns of accelerations, ours and those of moving numbers, as `nv` rows.
-            let (mut got, mut want) = ([(); 2].map(|()| Vec::new()), [(); 2].map(|()| Vec::new()));
-            let mut sizes = Vec::new();
-            for column in 0..2 * half + inputs.len() {
-                let (side, k) = (column / half, column % half);
-                let state = column < 2 * half;
-                let link = (state && k < nv).then_some(k);
-                let motor = (state && k >= nv).then(|| elastic[k - nv]);
-                let torque = (!state).then(|| inputs[column - 2 * half]);
-                let on = |x: Option<usize>, of: usize| x.filter(|_| side == of);
-                let slopes = moved(&s, [on(link, 0), on(link, 1), on(motor, 0), on(motor, 1), torque], unit);
-                let entry = |row: usize| match state {
-                    true => a[row * 2 * half + column],
-                    false => b[row * inputs.len() + column - 2 * half],
-                };
-                sizes.push(natural(&s)[if state { side } else { 4 }]);
-                want[0].push(slopes[0].clone());
-                want[1].push(slopes[1].clone());
-                got[0].push((0..nv).map(|k| entry(half + k)).collect::<Vec<f64>>());
-                let of_motor = |k: usize| elastic.iter().position(|e| *e == k).map(|i| entry(half + nv + i));
-                got[1].push((0..nv).map(|k| of_motor(k).unwrap_or(entry(half + k))).collect());
-                let mut rate: Vec<f64> = (0..half).map(|row| f64::from(state && side == 1 && row == k)).collect();
-                if let (true, Some(k)) = (model.is_floating() && side == 0, link.filter(|k| *k < 6)) {
-                    let twist = Motion::from(core::array::from_fn(|i| s.state.qd[i]));
-                    let moved = twist.cross(Motion::from(core::array::from_fn(|i| f64::from(i == k))));
-                    rate[..6].iter_mut().zip(moved.to_array()).for_each(|(rate, x)| *rate = -x);
-                }
-                let top: Vec<f64> = (0..half).map(entry).collect();
-                assert_close_above("ẋ of positions", &s, &top, &rate, DOUBLE, 1.0);
-            }
-            let m = norm(&library::mass_matrix(&s)[0].value);
-            for (column, (got, want)) in transposed(&got).into_iter().zip(transposed(&want)).enumerate() {
-                let [asks, asked] = [&got, &want].map(|x| library::weighed(&s, &x[0], &x[1]));
-                let floor = m * (norm(&want[0]) + sizes[column]);
-                assert_close_above(&format!("links, column {column}"), &s, &asks[0], &asked[0], 1e-11, floor);
-                assert_close_above(&format!("motors, column {column}"), &s, &asks[1], &asked[1], 1e-11, floor);
-            }
-        }
-    }
-}
-
-/// Pairs of columns.
-fn transposed(all: &[Vec<Vec<f64>>; 2]) -> Vec<[Vec<f64>; 2]> {
-    all[0].iter().zip(&all[1]).map(|(a, b)| [a.clone(), b.clone()]).collect()
-}
-
-/// Slopes of `q̈` and `θ̈` where one coordinate of `q, q̇, θ, θ̇, τ` moves.
-fn moved(s: &Subject, along: [Option<usize>; 5], unit: impl Fn(Option<usize>) -> Vec<f64>) -> [Vec<f64>; 2] {
-    let (model, nv, x) = (s.rigid.view(), s.state.qd.len(), &s.state);
-    let moving = |x: &[f64], k: Option<usize>| -> Vec<Dual> {
-        x.iter().zip(unit(k)).map(|(x, slope)| Dual::new(*x, slope)).collect()
-    };
-    let q = moving_positions(&x.q, &unit(along[0]));
-    let (qd, theta, thetad) = (moving(&x.qd, along[1]), moving(&x.theta, along[2]), moving(&x.thetad, along[3]));
-    let tau = moving(&x.tau, along[4]);
-    let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![Dual::zero(); nv]);
-    let scratch = ForwardScratch {
-        bodies: &mut vec![AbaScratch::new(); s.bodies.len()],
-        joint_space: &mut vec![JointSpaceScratch::new(); joint_space_len(&model)],
-        matrix: &mut vec![Dual::zero(); matrix_len(&model)],
-    };
-    let state = State { q: &q, qd: &qd, theta: &theta, thetad: &thetad };
-    let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
-    forward_dynamics(&model, state, &tau, External::none(), scratch, out).expect("it fits");
-    [qdd, thetadd].map(|all| all.iter().map(|x| x.slope).collect())
 }

@@ -1,5 +1,6 @@
 //! The library's functions at the state of a robot, by the names of what is generated.
 
+use super::scratch::Scratch;
 use super::subject::{Known, Subject};
 use gyroflex::dynamics::*;
 use gyroflex::spatial::{Motion, Transform};
@@ -24,10 +25,21 @@ impl Subject {
     }
 }
 
+/// `M` and `S`, of links that bend, too.
+pub fn inertia(s: &Subject) -> [Vec<f64>; 2] {
+    let Some(model) = s.robot().flexible else {
+        return [mass_matrix(s), coupling_matrix(s)].map(|known| known[0].value.clone());
+    };
+    let [mut mass, mut coupling] = [(); 2].map(|()| vec![0.0; model.nv() * model.nv()]);
+    let out = FlexibleMatrices { mass: &mut mass, coupling: &mut coupling };
+    flexible_mass_matrix(&model, &s.state.q, Scratch::of(&model).lend(), out).expect("it fits");
+    [mass, coupling]
+}
+
 /// `[M S; Sᵀ B]` times columns of accelerations, behind a rigid gear without what belongs to motors: torques.
 pub fn weighed(s: &Subject, qdd: &[f64], thetadd: &[f64]) -> [Vec<f64>; 2] {
-    let nv = s.nv();
-    let (m, c, b) = (&mass_matrix(s)[0].value, &coupling_matrix(s)[0].value, &reflected(s)[0].value);
+    let nv = s.state.qd.len();
+    let ([m, c], b) = (inertia(s), &reflected(s)[0].value);
     let columns = qdd.len() / nv;
     let [mut link, mut motor] = [(); 2].map(|()| vec![0.0; nv * columns]);
     for (i, (link, motor)) in link.chunks_mut(columns).zip(motor.chunks_mut(columns)).enumerate() {
@@ -103,8 +115,8 @@ pub fn coupling_matrix(s: &Subject) -> Vec<Known> {
 }
 
 pub fn reflected(s: &Subject) -> Vec<Known> {
-    let mut b = vec![0.0; s.nv()];
-    reflected_inertia(&s.rigid.view(), &mut b).expect("it fits");
+    let mut b = vec![0.0; s.state.qd.len()];
+    reflected_inertia(&s.rigid.view(), &mut b[..s.nv()]).expect("it fits");
     vec![Known::new("b", b)]
 }
 

@@ -49,7 +49,7 @@ pub fn library(records: &Records, s: &Point) -> Vec<(&'static str, Vec<f64>, f64
         }
         Some(bending) => {
             let model = bending.view();
-            let mut scratch = Scratch::of(&model);
+            let mut scratch = Scratch::<f64>::of(&model);
             flexible_rnea(&model, state, accel, External::none(), scratch.lend(), out).expect("it fits");
             let matrices = FlexibleMatrices { mass: &mut m, coupling: &mut c };
             flexible_mass_matrix(&model, &s.q, scratch.lend(), matrices).expect("it fits");
