@@ -156,3 +156,31 @@ fn generated_gravity_torques_of_bending_links_equal_library() {
         vec![Known::new("g", g).above(size)]
     });
 }
+
+/// Modes have the stiffness that the description gives their links, one block a link; transmissions have what they have on a robot
+/// whose links do not bend.
+#[test]
+fn generated_stiffness_of_bending_links_is_that_of_the_description() {
+    for seed in 0..20 {
+        for fidelity in Fidelity::ALL {
+            let robot = RandomFlexible::new(seed, &grown_bending().in_model(fidelity));
+            let s = Subject::bending(&robot, fidelity);
+            let got = s.evaluate::<f64>(&s.function(Quantity::Stiffness).expect("a link bends"), &[]);
+            let of = |name: &str| got.iter().find(|(of, _)| of == name).map(|(_, x)| x.as_slice());
+            let modes = robot.modes();
+            let (mut want, mut first) = (vec![0.0; modes * modes], 0);
+            for link in &robot.links {
+                let n = link.modes();
+                for (j, k) in (0..n * n).map(|p| (p / n, p % n)) {
+                    want[(first + j) * modes + first + k] = link.stiffness[(j, k)];
+                }
+                first += n;
+            }
+            assert_eq!(of("modal"), Some(want.as_slice()), "{s}");
+            let stiff = Subject::of(&robot.robot, fidelity);
+            let Some(function) = stiff.function(Quantity::Stiffness) else { continue };
+            let k = &stiff.evaluate::<f64>(&function, &[])[0].1;
+            assert_close_above("k", &s, &of("k").expect("it is elastic")[..k.len()], k, DOUBLE, 0.0);
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! What elastic joints alone have: stiffness, and the inverse from the motion of the links.
 
-use super::subject::{Known, Subject, grown};
+use super::subject::{DOUBLE, Known, SINGLE, Subject, grown};
 use gyroflex::Scalar;
 use gyroflex::dynamics::{
     AbaScratch, Contains, Deflections, DerivativeScratch, ElasticInverse, ElasticInverseScratch, External, Forward,
@@ -8,10 +8,11 @@ use gyroflex::dynamics::{
     elastic_inverse_len, required_smoothness, smoothness_len,
 };
 use gyroflex::model::{Fidelity, SpringSpec, TransmissionSpec};
+use gyroflex_codegen::function::Function;
 use gyroflex_codegen::quantity::{Options, Quantity, function};
 use gyroflex_testkit::Dual;
 use gyroflex_testkit::random::{Options as Grown, RandomRobot};
-use gyroflex_testkit::tolerance::assert_close_above;
+use gyroflex_testkit::tolerance::{Real, assert_close_above};
 
 /// `−∂τ_J/∂q` of forward dynamics: a transmission gives by its spring.
 #[test]
@@ -87,23 +88,38 @@ fn generated_elastic_inverse_equals_library() {
             let Ok(function) = function(&s.robot(), Quantity::ElasticInverse, &options) else { continue };
             let orders = orders(&s, torque_derivatives);
             let smoothness = Smoothness { joints: &orders, torque_derivatives };
-            // A motion of about a hertz.
-            s.state.q = robot.state(0).q;
+            // A motion of about a hertz, of numbers that both scalars have.
+            let single = s.round();
             let rates =
                 |row: usize| robot.state(10 + row as u64).qd.into_iter().map(move |x| 0.1 * x * 6f64.powi(row as i32));
-            let derivatives: Vec<f64> = (1..=smoothness.order()).flat_map(rates).collect();
-            let deflection: Vec<f64> = s.state.qd.iter().map(|x| 1e-3 * x).collect();
-            let want = library(&s, &smoothness, &derivatives, &deflection, 1e-3);
+            let rounded = |x: f64| f64::from(x as f32);
+            let derivatives: Vec<f64> = (1..=smoothness.order()).flat_map(rates).map(rounded).collect();
+            let deflection: Vec<f64> = s.state.qd.iter().map(|x| rounded(1e-3 * x)).collect();
+            let step = rounded(1e-3);
+            let want = library(&s, &smoothness, &derivatives, &deflection, step);
             let given: [(&str, &[f64]); 3] =
-                [("derivatives", &derivatives), ("deflection", &deflection), ("step", &[1e-3])];
-            // Every row is of a size of its own.
-            let nv = s.state.qd.len();
-            for (name, got) in s.evaluate::<f64>(&function, &given) {
-                let want = &want.iter().find(|want| want.name == name).expect("the library gives it").value;
-                for (row, (got, want)) in got.chunks(nv).zip(want.chunks(nv)).enumerate() {
-                    assert_close_above(&format!("{name}, row {row}"), &s, got, want, 1e-12, 0.0);
-                }
+                [("derivatives", &derivatives), ("deflection", &deflection), ("step", &[step])];
+            assert_rows_equal::<f64>(&s, &function, &want, &given, DOUBLE);
+            if single {
+                assert_rows_equal::<f32>(&s, &function, &want, &given, SINGLE);
             }
+        }
+    }
+}
+
+/// Every row is of a size of its own.
+fn assert_rows_equal<T: Real>(
+    s: &Subject,
+    function: &Function,
+    want: &[Known],
+    given: &[(&str, &[f64])],
+    tolerance: f64,
+) {
+    let nv = s.state.qd.len();
+    for (name, got) in s.evaluate::<T>(function, given) {
+        let want = &want.iter().find(|want| want.name == name).expect("the library gives it").value;
+        for (row, (got, want)) in got.chunks(nv).zip(want.chunks(nv)).enumerate() {
+            assert_close_above(&format!("{name}, row {row} in {}", T::NAME), s, got, want, tolerance, 0.0);
         }
     }
 }

@@ -131,3 +131,19 @@ fn a_rigid_model_has_no_transmissions_to_keep() {
     let floating = robot.bodies[0].joint == JointKind::Floating;
     assert_eq!(all.iter().any(|p| p.name() == "joint0.viscous"), !floating);
 }
+
+/// Whether a transmission is damped decides of what the inverse is made; of anything else it is not.
+#[test]
+fn an_elastic_inverse_keeps_no_damping_that_is_zero() {
+    let options = Grown { bodies: 3..=3, floating: 0.0, driven: 1.0, elastic: 1.0, damping: 0.0, ..Grown::default() };
+    let described = Described::new(&RandomRobot::new(5, &options), Fidelity::Reduced, None);
+    let records = described.lower();
+    let robot = described.robot(&records);
+    let keeping = |name: &str| {
+        let kept = vec![Parameter::of(name, &robot).expect("the robot has it")];
+        function(&robot, Quantity::ElasticInverse, &Options { kept, ..Options::default() })
+    };
+    let no = keeping("joint1.damping").expect_err("it is zero");
+    assert!(no.reason.contains("joint1.damping"), "{no}");
+    assert!(keeping("joint1.gear_ratio").is_ok() && keeping("link1.mass").is_ok());
+}
