@@ -9,6 +9,7 @@
 #![deny(missing_docs)]
 
 pub mod emit;
+pub mod explicit;
 pub mod function;
 pub mod graph;
 pub mod optimise;

@@ -9,7 +9,7 @@ use gyroflex::model::FlexibleModel;
 use gyroflex::spatial::Motion;
 
 /// What [`FlexibleScratch`] borrows.
-pub(super) struct Storage {
+pub(crate) struct Storage {
     bodies: Vec<FlexibleBody<Sym>>,
     stations: Vec<FlexibleStation<Sym>>,
     modes: Vec<FlexibleMode<Sym>>,
@@ -18,7 +18,7 @@ pub(super) struct Storage {
 }
 
 impl Storage {
-    pub(super) fn of(model: &FlexibleModel<Sym>) -> Self {
+    pub(crate) fn of(model: &FlexibleModel<Sym>) -> Self {
         Self {
             bodies: vec![FlexibleBody::new(); model.rigid().bodies().len()],
             stations: vec![FlexibleStation::new(); model.stations().len()],
@@ -28,7 +28,7 @@ impl Storage {
         }
     }
 
-    pub(super) fn lend(&mut self) -> FlexibleScratch<'_, Sym> {
+    pub(crate) fn lend(&mut self) -> FlexibleScratch<'_, Sym> {
         FlexibleScratch {
             bodies: &mut self.bodies,
             stations: &mut self.stations,

@@ -1,0 +1,1 @@
+//! Robots of the project, their numbers by hand.
