@@ -18,3 +18,4 @@ pub mod quantity;
 pub mod robot;
 pub mod split;
 pub mod sym;
+pub mod weigh;

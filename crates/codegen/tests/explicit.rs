@@ -2,7 +2,7 @@
 
 mod arms;
 
-use arms::{Arm, at, numbers, options, seeds};
+use arms::{Arm, at, numbers, options, seeds, shipped};
 use gyroflex::model::Fidelity;
 use gyroflex_codegen::explicit::{ExplicitModel, NotExplicit, Options};
 use gyroflex_codegen::function::Function;
@@ -64,6 +64,16 @@ fn explicit_equals_library_of_six_joints() {
         [Quantity::MassMatrix, Quantity::Gravity, Quantity::Bias]
             .into_iter()
             .for_each(|quantity| agree(&arm, &explicit, quantity, 1e-12));
+    }
+}
+
+#[test]
+fn explicit_equals_library_of_the_projects_robots() {
+    for fidelity in Fidelity::ALL {
+        for arm in [shipped::puma560(fidelity, 1.0), shipped::planar_2r(fidelity)] {
+            let explicit = ExplicitModel::of(&arm.robot(), &Options::default()).expect("nothing in it is not explicit");
+            QUANTITIES.into_iter().for_each(|quantity| agree(&arm, &explicit, quantity, 1e-12));
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Programs as text: one language a file.
 
+pub mod latex;
 mod literal;
 mod rust;
 

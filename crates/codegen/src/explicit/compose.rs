@@ -6,6 +6,10 @@ use gyroflex::Scalar;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 
+type Terms = Vec<(Monomial, f64)>;
+/// Whether it is a sine, and multiples of angles.
+type Circular = (bool, Vec<i8>);
+
 /// Writes sums as expressions of positions and kept parameters. Made inside a trace.
 pub(super) struct Composer<'a> {
     layout: &'a Layout,
@@ -26,13 +30,13 @@ impl<'a> Composer<'a> {
     }
 
     /// Terms with the factors of one group or variable after the other taken out.
-    fn nested(&mut self, terms: Vec<(Monomial, f64)>, factor: usize) -> Sym {
+    fn nested(&mut self, terms: Terms, factor: usize) -> Sym {
         let (layout, groups) = (self.layout, self.layout.groups.len());
         if factor == groups + layout.variables.len() {
             return Sym::from_f64(terms.iter().map(|(_, c)| c).sum());
         }
         if let Some(v) = factor.checked_sub(groups) {
-            let mut parts: BTreeMap<i8, Vec<(Monomial, f64)>> = BTreeMap::new();
+            let mut parts: BTreeMap<i8, Terms> = BTreeMap::new();
             for (m, c) in terms {
                 let (rest, power) = m.without_variable(layout, v);
                 parts.entry(power).or_default().push((rest, c));
@@ -40,12 +44,12 @@ impl<'a> Composer<'a> {
             let x = self.inputs[layout.variables[v]];
             return self.added(parts.into_iter().map(|(power, part)| (power_of(x, power), part)), factor);
         }
-        let mut parts: BTreeMap<Option<(bool, Vec<i8>)>, Vec<(Monomial, f64)>> = BTreeMap::new();
+        let mut parts: BTreeMap<Option<Circular>, Terms> = BTreeMap::new();
         for (m, c) in terms {
             let key = m.of_group(layout, factor).map(|h| (h.sine, h.multiples.to_vec()));
             parts.entry(key).or_default().push((m.without_group(layout, factor), c));
         }
-        let parts: Vec<(Sym, Vec<(Monomial, f64)>)> = parts
+        let parts: Vec<(Sym, Terms)> = parts
             .into_iter()
             .map(|(key, part)| match key {
                 None => (Sym::one(), part),
@@ -57,7 +61,7 @@ impl<'a> Composer<'a> {
         self.added(parts.into_iter(), factor)
     }
 
-    fn added(&mut self, parts: impl Iterator<Item = (Sym, Vec<(Monomial, f64)>)>, factor: usize) -> Sym {
+    fn added(&mut self, parts: impl Iterator<Item = (Sym, Terms)>, factor: usize) -> Sym {
         let mut sum = Sym::zero();
         for (x, part) in parts {
             sum += self.nested(part, factor + 1) * x;

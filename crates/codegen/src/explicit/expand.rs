@@ -42,10 +42,9 @@ impl<'a> Expansion<'a> {
     /// The sum of a node; none for an angle and what is made of angles by addition.
     fn node(&self, node: Node) -> Result<Option<Sum>, NotExplicit> {
         let layout = self.layout;
-        if let Node::Add(..) | Node::Sub(..) | Node::Neg(_) | Node::Mul(..) = node {
-            if node.operands().any(|id| self.known[id.index()].is_none()) {
-                return Ok(None);
-            }
+        let linear = matches!(node, Node::Add(..) | Node::Sub(..) | Node::Neg(_) | Node::Mul(..));
+        if linear && node.operands().any(|id| self.known[id.index()].is_none()) {
+            return Ok(None);
         }
         Ok(Some(match node {
             Node::Constant(bits) => Sum::constant(layout, f64::from_bits(bits)),

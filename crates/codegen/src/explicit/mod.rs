@@ -10,6 +10,7 @@ mod error;
 mod expand;
 mod functions;
 mod layout;
+mod lump;
 mod model;
 mod monomial;
 mod signature;
@@ -20,6 +21,7 @@ mod velocity;
 
 pub use error::NotExplicit;
 pub use layout::{Input, Layout};
+pub(crate) use lump::{Lump, Unit, rational};
 pub use model::{Coordinate, DriveLaw, ExplicitModel, JointLaw, Options, TransmissionLaw};
 pub use monomial::{Harmonic, Monomial};
 pub use sum::Sum;

@@ -90,6 +90,8 @@ pub struct ExplicitModel {
     pub(super) fidelity: Fidelity,
     pub(super) options: Options,
     pub(super) coordinates: Vec<Coordinate>,
+    /// Names of the links, one a joint.
+    pub(super) links: Vec<String>,
     pub(super) layout: Layout,
     /// The upper triangle, by rows.
     pub(crate) mass: Vec<Sum>,
@@ -114,7 +116,9 @@ impl ExplicitModel {
         let n = robot.nv();
         let upper: Vec<_> = (0..n).flat_map(|i| (i..n).map(move |j| (i, j))).map(|(i, j)| mass[i * n + j]).collect();
         let mut of_laws = Vec::new();
-        laws.iter().for_each(|law| drop(law.map(|id| of_laws.push(*id))));
+        for law in &laws {
+            law.map(|id| of_laws.push(*id));
+        }
         let inertia = upper.iter().chain(&coupling).chain(&of_laws).copied();
         let of_inertia = Expansion::new(&graph, &layout, options.degree, inertia)?;
         // A torque is a derivative: of one degree less.
@@ -138,6 +142,7 @@ impl ExplicitModel {
             fidelity: robot.fidelity,
             options: options.clone(),
             coordinates: coordinates(robot),
+            links: robot.links.to_vec(),
             mass: entries(&upper)?,
             coupling: entries(&coupling)?,
             layout,
@@ -166,6 +171,11 @@ impl ExplicitModel {
     /// The coordinates: joints, then modes.
     pub fn coordinates(&self) -> &[Coordinate] {
         &self.coordinates
+    }
+
+    /// Names of the links, one a joint.
+    pub fn links(&self) -> &[String] {
+        &self.links
     }
 
     /// What coordinates and kept parameters are in a term.
@@ -221,6 +231,15 @@ impl ExplicitModel {
     /// `D_jk` of the modes [N s/m].
     pub fn modal_damping(&self, j: usize, k: usize) -> f64 {
         self.modal_damping[j * self.modes() + k]
+    }
+
+    /// The same with another `D` of the modes, by rows [N s/m].
+    ///
+    /// # Panics
+    /// If it has not as many entries.
+    pub fn with_modal_damping(self, modal_damping: Vec<f64>) -> Self {
+        assert_eq!(modal_damping.len(), self.modal_damping.len(), "an entry a pair of modes");
+        Self { modal_damping, ..self }
     }
 
     /// Number of modal coordinates.

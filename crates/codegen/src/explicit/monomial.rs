@@ -50,6 +50,21 @@ impl Monomial {
         Some(if turned && sine { -1.0 } else { 1.0 })
     }
 
+    /// Whether it is one.
+    pub fn is_one(&self) -> bool {
+        self.0.iter().all(|x| *x == 0)
+    }
+
+    /// The same among so many more variables.
+    pub(super) fn extended(&self, more: usize) -> Self {
+        Self(self.0.iter().copied().chain(core::iter::repeat_n(0, more)).collect())
+    }
+
+    /// Multiplies it by a variable.
+    pub(super) fn raise(&mut self, layout: &Layout, variable: usize) {
+        self.0[layout.first_power() + variable] += 1;
+    }
+
     /// Powers of the variables.
     pub fn powers(&self, layout: &Layout) -> &[i8] {
         &self.0[layout.first_power()..]
@@ -96,7 +111,7 @@ impl Monomial {
     }
 
     /// Its derivative by an input: a factor and what it multiplies.
-    pub(super) fn derivative(&self, layout: &Layout, input: super::Input) -> Option<(Self, f64)> {
+    pub(crate) fn derivative(&self, layout: &Layout, input: super::Input) -> Option<(Self, f64)> {
         let mut out = self.clone();
         match input {
             super::Input::Variable(v) => {
