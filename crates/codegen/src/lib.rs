@@ -9,6 +9,7 @@
 #![deny(missing_docs)]
 
 pub mod emit;
+pub mod explicit;
 pub mod function;
 pub mod graph;
 pub mod optimise;
@@ -17,3 +18,4 @@ pub mod quantity;
 pub mod robot;
 pub mod split;
 pub mod sym;
+pub mod weigh;

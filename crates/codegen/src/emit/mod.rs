@@ -9,6 +9,7 @@ mod elementary;
 mod head;
 mod identifier;
 mod json;
+pub mod latex;
 mod literal;
 mod python;
 mod rust;

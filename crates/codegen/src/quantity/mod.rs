@@ -22,6 +22,7 @@ mod stiffness;
 mod tracing;
 mod unavailable;
 
+pub(crate) use bending::Storage;
 pub use options::{Options, Point};
 pub use unavailable::Unavailable;
 

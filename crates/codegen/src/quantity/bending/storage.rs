@@ -9,7 +9,7 @@ use gyroflex::model::FlexibleModel;
 use gyroflex::spatial::Motion;
 
 /// What [`FlexibleScratch`] borrows.
-pub(in super::super) struct Storage<T> {
+pub(crate) struct Storage<T> {
     bodies: Vec<FlexibleBody<T>>,
     stations: Vec<FlexibleStation<T>>,
     modes: Vec<FlexibleMode<T>>,
@@ -18,7 +18,7 @@ pub(in super::super) struct Storage<T> {
 }
 
 impl<T: Scalar> Storage<T> {
-    pub(in super::super) fn of(model: &FlexibleModel<Sym>) -> Self {
+    pub(crate) fn of(model: &FlexibleModel<Sym>) -> Self {
         Self {
             bodies: vec![FlexibleBody::new(); model.rigid().bodies().len()],
             stations: vec![FlexibleStation::new(); model.stations().len()],
@@ -28,7 +28,7 @@ impl<T: Scalar> Storage<T> {
         }
     }
 
-    pub(in super::super) fn lend(&mut self) -> FlexibleScratch<'_, T> {
+    pub(crate) fn lend(&mut self) -> FlexibleScratch<'_, T> {
         FlexibleScratch {
             bodies: &mut self.bodies,
             stations: &mut self.stations,

@@ -1,0 +1,46 @@
+//! The equations of motion as a document: explicit, in the grouping of Cetinkunt and Book 1988 (eq. 30, 38 and 46).
+//!
+//! Inertia, Coriolis and centrifugal forces, gravity, stiffness and damping, rotors, one section each. Coefficients are lumped constants
+//! `p₁, p₂, …` with a table of their values at the end; parameters that are kept stand by their names.
+
+mod constants;
+mod lines;
+mod sections;
+mod symbols;
+mod terms;
+mod velocities;
+
+use super::{File, Head};
+use crate::explicit::ExplicitModel;
+use sections::Writer;
+
+const PREAMBLE: &str = r"\documentclass[10pt,a4paper]{article}
+\usepackage[margin=16mm]{geometry}
+\usepackage{amsmath,multicol}
+\allowdisplaybreaks
+\setlength{\parindent}{0pt}
+\setlength{\parskip}{3pt}
+\setlength{\columnseprule}{0pt}
+\pagestyle{empty}
+\makeatletter
+\renewcommand{\section}{\@startsection{section}{1}{0pt}{7pt plus 2pt}{2pt}{\normalfont\normalsize\bfseries}}
+\makeatother
+\AtBeginDocument{\abovedisplayskip=3pt plus 2pt \belowdisplayskip=3pt plus 2pt \abovedisplayshortskip=2pt \belowdisplayshortskip=3pt \jot=2pt}
+";
+
+/// The document, `<robot>.tex`. It needs `amsmath`, `geometry` and `multicol`, which every distribution has.
+pub fn document(model: &ExplicitModel, head: &Head) -> File {
+    let (lumped, lumps) = model.lumped();
+    let mut writer = Writer::new(model, &lumped);
+    let body = writer.body(&lumps);
+    let name = symbols::escaped(&head.robot);
+    let text = format!(
+        "% {}, {}. {}\n{PREAMBLE}\\begin{{document}}\\small\n{{\\Large Equations of motion of {name}}}\\par\n{}{body}\\end{{document}}\n",
+        head.robot,
+        head.model,
+        head.command,
+        writer.introduction(head),
+    );
+    let stem: String = head.robot.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    File { name: format!("{stem}.tex"), text }
+}
