@@ -3,6 +3,7 @@ from, and how many operations it has."""
 
 import json
 import re
+import sys
 
 from build import ARMS, BIN, C_FLAGS, GENERATED, HOME, programs, straight_line_programs
 from measure import Program, family, kept, side_by_side
@@ -18,8 +19,11 @@ LIBRARIES = {"gyroflex": "gyroflex", "Pinocchio": "pinocchio"}
 
 
 def measure(options):
-    """One state at a time by gyroflex and Pinocchio, of what is built of them, and all straight-line code."""
-    names = [name for name, _ in programs() if name.startswith(("gyroflex", "pinocchio")) and (BIN / name).exists()]
+    """All straight-line code, and one state at a time by those builds of gyroflex and Pinocchio that there are."""
+    names = [name for name, _ in programs() if name.startswith(tuple(LIBRARIES.values())) and (BIN / name).exists()]
+    missing = [library for library, name in LIBRARIES.items() if not any(n.startswith(name) for n in names)]
+    if missing:
+        sys.exit(f"no program of {' and '.join(missing)}: run the stage `build`")
     workers = [Program(name, options.core, ARMS) for name in [*names, *(name for name, _ in straight_line_programs())]]
     wanted = {f"{arm}/{algorithm}" for arm in ARMS for algorithm in FUNCTIONS}
     about, rows = side_by_side(workers, lambda _, row: family(row) in wanted and "lanes" not in row, options)
@@ -49,7 +53,7 @@ def kind_of(value):
         return "divisions"
     if re.fullmatch(r"(sin|cos)\s*\(\s*\w+\s*\)", value):
         return "circular"
-    raise SystemExit(f"CasADi wrote `{value}`, which nobody counts yet")
+    sys.exit(f"CasADi wrote `{value}`, which nobody counts yet")
 
 
 def operations_of_gyroflex(arm, algorithm):
@@ -68,6 +72,10 @@ def who(entry):
     return code or next(words for words, name in LIBRARIES.items() if entry["program"].startswith(name))
 
 
+def columns_of(entries):
+    return [column for column in [*CODE, *LIBRARIES] if any(who(e) == column for e in entries)]
+
+
 def operations():
     rows = []
     for algorithm in FUNCTIONS:
@@ -78,23 +86,25 @@ def operations():
 
 
 def comparison(entries):
-    """Everybody with the fastest of their builds and ways."""
+    """Everybody with the fastest of their builds."""
     rows = []
-    columns = [*CODE, *LIBRARIES]
+    columns = columns_of(entries)
     for algorithm in FUNCTIONS:
         for arm in ARMS:
-            group = [e for e in entries if family(e["row"]) == f"{arm}/{algorithm}"]
-            best = {column: min((e for e in group if who(e) == column), key=lambda e: min(e["fastest"])) for column in columns}
-            first = best[columns[0]]
-            rows.append([f"{ALGORITHMS[algorithm]} · {title(arm)}", ns(min(first["fastest"])),
-                         *(f"{ns(min(best[c]['fastest']))} ({ratio(best[c], first):.1f}×)" for c in columns[1:])])
+            cells, first = [f"{ALGORITHMS[algorithm]} · {title(arm)}"], None
+            for column in columns:
+                found = [e for e in entries if family(e["row"]) == f"{arm}/{algorithm}" and who(e) == column]
+                best = min(found, key=lambda e: min(e["fastest"]))
+                first = first or best
+                cells.append(ns(min(best["fastest"])) + ("" if best is first else f" ({ratio(best, first):.1f}×)"))
+            rows.append(cells)
     return table(["ns per call", *columns], rows)
 
 
 def section():
     found = json.loads(RESULTS.read_text())
     entries = found["rows"]
-    errors = {column: max(e["error"] for e in entries if who(e) == column) for column in [*CODE, *LIBRARIES]}
+    errors = {column: max(e["error"] for e in entries if who(e) == column) for column in columns_of(entries)}
     about = "\n".join([
         measured(found["about"], "all programs"),
         system(),
