@@ -150,6 +150,8 @@ def gyroflex_generator():
                 sys.exit(f"`gyroflex codegen` failed with code {found.returncode}, see above")
         # The counts are those of the functions, whatever the language.
         (GENERATED / "gyroflex" / f"{arm}.json").write_text(found.stdout)
+    modules = [f'#[path = "{GENERATED}/gyroflex/{arm}.rs"]\nmod {arm};\n' for arm in ARMS]
+    (GENERATED / "gyroflex/arms.rs").write_text("".join(modules))
 
 
 def straight_line_c(compiler, architecture):

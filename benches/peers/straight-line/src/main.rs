@@ -2,22 +2,14 @@
 
 mod arm;
 #[path = "../../../src/peers/mod.rs"]
-#[allow(dead_code)] // shared with gyroflex's program, which has other needs
+#[allow(dead_code, unused_imports)] // shared with gyroflex's program, which has other needs
 mod peers;
 
 use arm::{Arm, State};
 use peers::Worker;
 
-/// The functions of a generated file, which is in the folder that the variable `GENERATED` names.
-macro_rules! generated {
-    ($($name:ident)*) => {
-        $(mod $name {
-            include!(concat!(env!("GENERATED"), "/", stringify!($name), ".rs"));
-        })*
-    };
-}
-
-generated!(panda panda_flex ur5 ur5_flex);
+// A module for every arm; `stages/build.py` writes the list.
+include!(concat!(env!("GENERATED"), "/arms.rs"));
 
 /// An arm without rotors, which is a robot without motor coordinates.
 macro_rules! rigid {
