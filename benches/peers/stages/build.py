@@ -158,7 +158,8 @@ def straight_line_c(compiler, architecture):
     name = f"straight-line-{compiler}-{architecture}"
     flags, objects, folder = [*C_FLAGS, f"-march={architecture}"], [], HOME / f"objects-{compiler}-{architecture}"
     folder.mkdir(exist_ok=True)
-    for source in sorted(GENERATED.glob("*/*.c")):
+    sources = [GENERATED / f"casadi/{arm}_{algorithm}.c" for arm in ARMS for algorithm in ("aba", "rnea")]
+    for source in [*sources, *(GENERATED / f"gyroflex/{arm}.c" for arm in ARMS)]:
         objects.append(folder / f"{source.parent.name}-{source.stem}.o")
         nice(compiler, *flags, "-c", source, "-o", objects[-1])
     nice(COMPILERS[compiler], *CXX_FLAGS, f"-march={architecture}", "-I", GENERATED / "gyroflex", HERE / "cpp/straight_line.cpp",
