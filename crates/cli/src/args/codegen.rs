@@ -37,6 +37,18 @@ pub struct Codegen {
     /// The number type of the code
     #[arg(long, value_enum, default_value_t = Scalar::F64)]
     pub scalar: Scalar,
+    /// Rust that takes so many states side by side, in the lanes of vector registers
+    #[arg(long, value_name = "N")]
+    pub lanes: Option<usize>,
+    /// Drop terms whose torque stays below this part of the largest torque of their equation, and report what that costs
+    #[arg(long, value_name = "PART")]
+    pub simplify_to: Option<f64>,
+    /// The scenario whose motion decides which terms matter [default: motions all over the workspace]
+    #[arg(long, value_name = "SCENARIO", requires = "simplify_to")]
+    pub along: Option<PathBuf>,
+    /// Cut every function into so many parts for as many processors (Rust, with the crate rayon)
+    #[arg(long, value_name = "N")]
+    pub split: Option<usize>,
     /// The folder to write to
     #[arg(short, long, value_name = "FOLDER", default_value = ".")]
     pub output: PathBuf,
@@ -56,4 +68,12 @@ pub struct Codegen {
 pub enum LanguageName {
     /// Rust without `std` and without dependencies
     Rust,
+    /// C99 without a library, with a header and a test program
+    C,
+    /// Python with NumPy
+    Python,
+    /// The explicit equations as a document
+    Latex,
+    /// The expression graph
+    Json,
 }

@@ -19,6 +19,7 @@ pub use head::Head;
 pub use style::{Precision, Style};
 
 use crate::function::Function;
+use crate::split::Split;
 
 /// A language to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -80,4 +81,9 @@ pub fn files(
         Language::Python => python::files(head, functions, stem),
         Language::Json => json::files(head, functions, stem),
     }
+}
+
+/// Rust of functions in parts, with one function for each that runs its parts side by side: that one needs the crate `rayon`.
+pub fn parallel(head: &Head, functions: &[(Function, Split)], style: impl Into<Style>, stem: &str) -> Vec<File> {
+    rust::parallel(head, functions, style.into(), stem)
 }

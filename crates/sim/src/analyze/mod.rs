@@ -18,6 +18,7 @@ mod workspace;
 
 pub use bounds::{Bound, Bounds, bounds, coriolis_norm};
 pub use motion::Motion;
+pub(crate) use recorded::{Simulated, simulated};
 pub use recorded::{of_log, of_scenario};
 pub use report::{JointReport, Report, Side, SignificanceRange};
 pub use significance::{Significance, significance};

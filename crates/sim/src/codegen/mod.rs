@@ -1,19 +1,23 @@
-//! Code for a loaded robot: what is asked for by names, and the files that come out.
+//! Code and equations of a loaded robot: what is asked for by names, and the files that come out.
 
 mod report;
 mod request;
+mod samples;
 
 use crate::error::Error;
 use crate::robot::{OwnedModel, Robot};
-use gyroflex::model::Fidelity;
-use gyroflex_codegen::emit::{self, File, Head};
-pub use gyroflex_codegen::emit::{Language, Precision};
+use gyroflex_codegen::emit::{self, File, Head, latex};
+use gyroflex_codegen::explicit::{ExplicitModel, Options as ExplicitOptions};
 use gyroflex_codegen::function::Function;
 use gyroflex_codegen::optimise::optimise;
-use gyroflex_codegen::quantity;
+use gyroflex_codegen::quantity::{self, Options};
 use gyroflex_codegen::robot as symbolic;
-pub use report::{Report, Row};
-pub use request::Request;
+use gyroflex_codegen::split::split;
+use gyroflex_codegen::weigh;
+
+pub use gyroflex_codegen::emit::{Language, Precision, Style};
+pub use report::{Parts, Report, Row, Weighing};
+pub use request::{Request, Simplify, Target};
 
 /// Generated files, and what they compute at what cost.
 #[derive(Clone, Debug)]
@@ -31,31 +35,112 @@ pub struct Generated {
 pub fn generate(
     robot: &Robot,
     request: &Request,
-    mut progress: impl FnMut(f64) -> bool,
+    progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Generated>, Error> {
     let fidelity = request.fidelity.unwrap_or(robot.fidelity);
     let model = robot.model(fidelity)?;
     let names = Names::of(robot);
     let source = names.source(robot, &model);
     let options = request.options(robot, &source)?;
-    let quantities = request.quantities(robot, &source, &options)?;
-    let steps = quantities.len() as f64;
-    let mut functions: Vec<Function> = Vec::new();
-    for (i, quantity) in quantities.into_iter().enumerate() {
-        let traced = quantity::function(&source, quantity, &options).map_err(|e| request::unavailable(robot, e))?;
-        if !progress((i as f64 + 0.5) / steps) {
+    request.check(robot)?;
+    let mut report = Report::of(robot, fidelity);
+    let mut explicit = None;
+    if request.is_explicit() {
+        let choices = ExplicitOptions { kept: options.kept.clone(), ..ExplicitOptions::default() };
+        let whole = ExplicitModel::of(&source, &choices).map_err(|e| request::not_explicit(robot, &e))?;
+        explicit = match &request.simplify {
+            None => Some(whole),
+            Some(simplify) => match simplified(robot, &source, &whole, simplify, progress)? {
+                None => return Ok(None),
+                Some((model, weighing)) => {
+                    report.weighing = weighing;
+                    Some(model)
+                }
+            },
+        };
+    }
+    let stem = request.stem.clone().unwrap_or_else(|| request::identifier(&robot.name));
+    let head = Head {
+        robot: robot.name.clone(),
+        model: fidelity.name().to_owned(),
+        command: request.command(robot, fidelity),
+    };
+    if let (Target::Latex, Some(model)) = (request.target, &explicit) {
+        report.terms = Some(model.terms());
+        let document = File { name: format!("{stem}.tex"), ..latex::document(model, &head) };
+        return Ok(Some(Generated { files: vec![document], report }));
+    }
+    let Some(functions) = functions(robot, request, &source, &options, explicit.as_ref(), progress)? else {
+        return Ok(None);
+    };
+    report.add(&functions);
+    let files = match (request.target, request.split) {
+        (Target::Code(_), Some(processors)) => {
+            let parts: Vec<_> =
+                functions.into_iter().map(|f| (split(&f, processors), f)).map(|(s, f)| (f, s)).collect();
+            report.split(&parts);
+            emit::parallel(&head, &parts, request.style, &stem)
+        }
+        (Target::Code(language), None) => emit::files(language, &head, &functions, request.style, &stem),
+        (Target::Latex, _) => Vec::new(),
+    };
+    Ok(Some(Generated { files, report }))
+}
+
+/// The functions asked for, by the algorithms or by the explicit equations.
+fn functions(
+    robot: &Robot,
+    request: &Request,
+    source: &symbolic::Robot,
+    options: &Options,
+    explicit: Option<&ExplicitModel>,
+    progress: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<Vec<Function>>, Error> {
+    let quantities = request.quantities(robot, source, options, explicit)?;
+    let steps = 2.0 * quantities.len() as f64;
+    let mut functions = Vec::new();
+    for quantity in quantities {
+        let traced = match explicit {
+            Some(model) => model.function(quantity),
+            None => quantity::function(source, quantity, options),
+        };
+        let traced = traced.map_err(|e| request::unavailable(robot, e))?;
+        if !progress((2.0 * functions.len() as f64 + 1.0) / steps) {
             return Ok(None);
         }
         functions.push(optimise(&traced));
-        if !progress((i as f64 + 1.0) / steps) {
+        if !progress(2.0 * functions.len() as f64 / steps) {
             return Ok(None);
         }
     }
-    let stem = request.stem.clone().unwrap_or_else(|| request::identifier(&robot.name));
-    let head = head(robot, fidelity, request);
-    let files = emit::files(request.language, &head, &functions, request.precision, &stem);
-    let report = Report::of(robot, fidelity, &functions);
-    Ok(Some(Generated { files, report }))
+    Ok(Some(functions))
+}
+
+/// The model with the terms that matter, and what other tolerances would have left.
+fn simplified(
+    robot: &Robot,
+    source: &symbolic::Robot,
+    whole: &ExplicitModel,
+    simplify: &Simplify,
+    progress: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<(ExplicitModel, Vec<Weighing>)>, Error> {
+    let Some(samples) = samples::of(robot, source.fidelity, simplify, progress)? else { return Ok(None) };
+    let mut tolerances = samples::TOLERANCES.to_vec();
+    tolerances.retain(|t| *t != simplify.tolerance);
+    tolerances.push(simplify.tolerance);
+    tolerances.sort_by(|a, b| b.total_cmp(a));
+    let (mut chosen, mut table) = (None, Vec::new());
+    for (k, tolerance) in tolerances.iter().enumerate() {
+        let simpler = weigh::simplify(whole, &samples, *tolerance);
+        table.push(Weighing::of(&simpler.report));
+        if *tolerance == simplify.tolerance {
+            chosen = Some(simpler.model);
+        }
+        if !progress((k + 1) as f64 / tolerances.len() as f64) {
+            return Ok(None);
+        }
+    }
+    Ok(chosen.map(|model| (model, table)))
 }
 
 /// Names of a robot's joints and links, as the symbolic robot borrows them.
@@ -84,8 +169,4 @@ impl Names {
             payload: robot.payload.and_then(|load| load.body.map(|body| (body, load.inertia))),
         }
     }
-}
-
-fn head(robot: &Robot, fidelity: Fidelity, request: &Request) -> Head {
-    Head { robot: robot.name.clone(), model: fidelity.name().to_owned(), command: request.command(fidelity) }
 }

@@ -3,43 +3,92 @@
 use super::symbolic;
 use crate::error::{Error, ErrorKind};
 use crate::robot::Robot;
+use crate::scenario::ScenarioFile;
 use gyroflex::dynamics::Axes;
 use gyroflex::model::Fidelity;
-use gyroflex_codegen::emit::{Language, Precision};
+use gyroflex_codegen::emit::{Language, Precision, Style};
+use gyroflex_codegen::explicit::{ExplicitModel, NotExplicit};
 use gyroflex_codegen::quantity::{self, Options, Point, Quantity, Unavailable};
 use gyroflex_codegen::robot::Parameter;
+
+/// What to write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// Code in a language.
+    Code(Language),
+    /// The explicit equations as a LaTeX document.
+    Latex,
+}
+
+/// Which terms to drop.
+#[derive(Clone, Debug)]
+pub struct Simplify {
+    /// Largest part of an equation's largest torque that a dropped term may have [–].
+    pub tolerance: f64,
+    /// The scenario whose motion counts; `None`: motions all over the workspace.
+    pub along: Option<ScenarioFile>,
+}
 
 /// What to generate.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// Names of quantities; `all` is all that the robot has.
     pub what: Vec<String>,
-    /// The language.
-    pub language: Language,
-    /// The number type of the code.
-    pub precision: Precision,
+    /// What to write.
+    pub target: Target,
+    /// Number type and lanes of the code.
+    pub style: Style,
     /// Which model; `None` is the robot's own.
     pub fidelity: Option<Fidelity>,
     /// Names of parameters that stay symbols.
     pub kept: Vec<String>,
     /// The link whose Jacobian is asked for; `None` is the last that moves.
     pub link: Option<String>,
+    /// Which terms to drop; `None` is none.
+    pub simplify: Option<Simplify>,
+    /// For how many processors to cut the functions.
+    pub split: Option<usize>,
     /// Name of the files without what the language appends; `None` is the robot's.
     pub stem: Option<String>,
 }
 
 impl Request {
+    /// Whether the explicit equations are asked for, and not the algorithms.
+    pub(super) fn is_explicit(&self) -> bool {
+        self.target == Target::Latex || self.simplify.is_some()
+    }
+
+    /// Choices that do not go together.
+    pub(super) fn check(&self, robot: &Robot) -> Result<(), Error> {
+        let rust = self.target == Target::Code(Language::Rust);
+        let wrong = |element: &str, problem: &str, remedy: &str| Err(wrong(robot, element, problem.to_owned(), remedy));
+        match (self.split, self.style.lanes, &self.simplify) {
+            (Some(_), ..) if !rust => {
+                wrong("--split", "parts are run side by side by Rust alone", "choose --lang rust")
+            }
+            (Some(0), ..) => wrong("--split", "there is no part", "give at least 1"),
+            (_, Some(_), _) if !rust => wrong("--lanes", "lanes are Rust's", "choose --lang rust"),
+            (_, Some(0), _) => wrong("--lanes", "there is no lane", "give at least 1"),
+            (.., Some(simplify)) if !(simplify.tolerance.is_finite() && simplify.tolerance >= 0.0) => {
+                wrong("--simplify-to", "it is not a part of a torque", "give a number from 0 up, such as 1e-3")
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The quantities asked for, once each.
     pub(super) fn quantities(
         &self,
         robot: &Robot,
         source: &symbolic::Robot,
         options: &Options,
+        explicit: Option<&ExplicitModel>,
     ) -> Result<Vec<Quantity>, Error> {
         let mut quantities = Vec::new();
         for name in &self.what {
-            let named: Vec<Quantity> = match name.as_str() {
-                "all" => quantity::available(source, options),
+            let named: Vec<Quantity> = match (name.as_str(), explicit) {
+                ("all", None) => quantity::available(source, options),
+                ("all", Some(model)) => Quantity::ALL.iter().copied().filter(|q| model.function(*q).is_ok()).collect(),
                 _ => vec![named(robot, name)?],
             };
             for quantity in named {
@@ -61,8 +110,32 @@ impl Request {
     }
 
     /// How the same files are made again.
-    pub(super) fn command(&self, fidelity: Fidelity) -> String {
-        format!("gyroflex codegen ROBOT --what {} --model {}", self.what.join(","), fidelity.name())
+    pub(super) fn command(&self, robot: &Robot, fidelity: Fidelity) -> String {
+        let file = robot.sources.last().map_or("ROBOT", |s| s.name.as_str());
+        let language = match self.target {
+            Target::Code(language) => language.name(),
+            Target::Latex => "latex",
+        };
+        let mut command = format!("gyroflex codegen {file} --model {} --lang {language}", fidelity.name());
+        if self.target != Target::Latex {
+            command += &format!(" --what {}", self.what.join(","));
+            command += if self.style.precision == Precision::Single { " --scalar f32" } else { "" };
+        }
+        for name in &self.kept {
+            command += &format!(" --keep-symbol {name}");
+        }
+        let number = |key: &str, n: Option<usize>| n.map_or(String::new(), |n| format!(" --{key} {n}"));
+        command += &(number("lanes", self.style.lanes) + &number("split", self.split));
+        if let Some(link) = &self.link {
+            command += &format!(" --link {link}");
+        }
+        if let Some(simplify) = &self.simplify {
+            command += &format!(" --simplify-to {}", simplify.tolerance);
+            if let Some(file) = &simplify.along {
+                command += &format!(" --along {}", file.path.file_name().unwrap_or_default().to_string_lossy());
+            }
+        }
+        command
     }
 }
 
@@ -100,6 +173,11 @@ fn wrong(robot: &Robot, element: &str, problem: String, remedy: &str) -> Error {
 /// A quantity that the robot does not have.
 pub(super) fn unavailable(robot: &Robot, e: Unavailable) -> Error {
     wrong(robot, &format!("--what {}", e.quantity.name()), e.reason, &e.remedy)
+}
+
+/// A robot without explicit equations.
+pub(super) fn not_explicit(robot: &Robot, e: &NotExplicit) -> Error {
+    wrong(robot, "explicit equations", e.to_string(), "generate code without --simplify-to, which every robot has")
 }
 
 /// A name as programs may have it.

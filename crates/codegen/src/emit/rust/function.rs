@@ -5,7 +5,7 @@ use super::super::head::{about, cost};
 use super::super::identifier::identifier;
 use super::super::literal::{is_finite, literal};
 use super::super::{Precision, Style};
-use super::scalar;
+use super::{number, scalar};
 use crate::function::{Function, Output};
 use crate::program::Program;
 use std::fmt::Write;
@@ -37,10 +37,7 @@ impl Rust {
         let mut text = marked(&lines, "/// ");
         text.push_str("#[rustfmt::skip]\n#[allow(dead_code, unused_variables, rustdoc::broken_intra_doc_links)]\n");
         text.push_str("#[allow(clippy::all, clippy::pedantic, clippy::nursery)]\n");
-        let number = match self.style.lanes {
-            None => scalar(self.style.precision).to_owned(),
-            Some(lanes) => format!("[{}; {lanes}]", scalar(self.style.precision)),
-        };
+        let number = number(self.style);
         let mut arguments: Vec<String> =
             function.arguments.iter().map(|a| format!("{}: &[{number}; {}]", identifier(&a.name), a.len)).collect();
         arguments.extend(
@@ -72,7 +69,8 @@ impl Rust {
     }
 }
 
-fn shape(output: &Output, number: &str) -> String {
+/// The type of an output.
+pub(super) fn shape(output: &Output, number: &str) -> String {
     match output.columns {
         None => format!("[{number}; {}]", output.entries.len()),
         Some(columns) => format!("[[{number}; {columns}]; {}]", output.rows),
@@ -80,7 +78,7 @@ fn shape(output: &Output, number: &str) -> String {
 }
 
 /// The name of an output, other than that of every argument.
-fn result_name(function: &Function, output: &Output) -> String {
+pub(super) fn result_name(function: &Function, output: &Output) -> String {
     let mut name = identifier(&output.name);
     while function.arguments.iter().any(|a| identifier(&a.name) == name) {
         name.push_str("_out");

@@ -2,12 +2,14 @@
 
 mod function;
 mod helpers;
+mod parallel;
 
 use super::body::marked;
 use super::{File, Head, Precision, Style};
 use crate::function::Function;
 use crate::program::Program;
 use function::Rust;
+pub(super) use parallel::parallel;
 
 pub(super) fn files(head: &Head, functions: &[Function], style: Style, stem: &str) -> Vec<File> {
     let programs: Vec<Program> = functions.iter().map(Program::of).collect();
@@ -25,6 +27,14 @@ pub(super) fn files(head: &Head, functions: &[Function], style: Style, stem: &st
     }
     text.push_str(&helpers::helpers(&programs, style));
     vec![File { name: format!("{stem}.rs"), text }]
+}
+
+/// The type of a number of a state.
+fn number(style: Style) -> String {
+    match style.lanes {
+        None => scalar(style.precision).to_owned(),
+        Some(lanes) => format!("[{}; {lanes}]", scalar(style.precision)),
+    }
 }
 
 fn scalar(precision: Precision) -> &'static str {
