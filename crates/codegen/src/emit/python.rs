@@ -37,7 +37,7 @@ fn function(function: &Function) -> String {
     let mut lines = about(function);
     lines.extend([String::new(), cost(function) + "."]);
     let _ = write!(text, "\n\ndef {name}({}):\n", arguments.join(", "));
-    let _ = write!(text, "    \"\"\"{}    \"\"\"\n", marked(&lines, "    ").trim_start());
+    let _ = writeln!(text, "    \"\"\"{}    \"\"\"", marked(&lines, "    ").trim_start());
     let lengths: Vec<String> =
         function.arguments.iter().map(|a| format!("({}, {}, \"{}\")", identifier(&a.name), a.len, a.name)).collect();
     let list = arguments.iter().map(|a| format!("{a}, ")).collect::<String>();

@@ -11,7 +11,7 @@ pub(super) fn text(unit: &Unit) -> String {
     let programs: Vec<Program> = unit.functions.iter().map(Program::of).collect();
     let uses = Uses::of(&programs);
     let mut text = unit.opening(&[]);
-    let _ = write!(text, "#include \"{}.h\"\n", unit.stem);
+    let _ = writeln!(text, "#include \"{}.h\"", unit.stem);
     let bits = uses.sin_cos || uses.sqrt || uses.exp || uses.tanh || uses.atan2;
     if bits {
         let width = match unit.precision {
