@@ -7,6 +7,7 @@
 mod c;
 mod cases;
 mod elementary;
+mod head;
 mod json;
 mod python;
 mod robots;
