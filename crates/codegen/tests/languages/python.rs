@@ -23,12 +23,19 @@ fn batches_in_python_are_the_library() {
             if precision == Precision::Single && !case.stem.starts_with("arm") {
                 continue;
             }
-            for (f, (function, points)) in case.functions.iter().zip(&case.points).enumerate() {
-                let lengths = function.arguments.iter().map(|a| a.len.to_string());
-                let mut command = numpy().expect("it is there");
-                command.args(["run.py", &case.stem, &function.name, dtype]).args(lengths);
-                let got = run(&mut command, &folder, &points.inputs);
-                case.assert_equal(&format!("Python, {dtype}"), f, precision, &got);
+            let (mut command, mut points) = (numpy().expect("it is there"), Vec::new());
+            command.args(["run.py", &case.stem]);
+            for (function, of_it) in case.functions.iter().zip(&case.points) {
+                let lengths: Vec<String> = function.arguments.iter().map(|a| a.len.to_string()).collect();
+                command.arg(format!("{}:{dtype}:{}:{}", function.name, of_it.inputs.len(), lengths.join(",")));
+                points.extend(of_it.inputs.iter().cloned());
+            }
+            let got = run(&mut command, &folder, &points);
+            let mut rest = got.as_slice();
+            for (f, of_it) in case.points.iter().enumerate() {
+                let (got, more) = rest.split_at(of_it.inputs.len());
+                rest = more;
+                case.assert_equal(&format!("Python, {dtype}"), f, precision, got);
             }
         }
     }
