@@ -154,8 +154,8 @@ impl Dialect {
             ("@arcs@", arcs.join(", ")),
             ("@log2_e@", n(LOG2_E)),
             // ln 2 in two parts, the first short enough for exact products.
-            ("@ln2_1@", n(ln2[0])),
-            ("@ln2_2@", n(ln2[1])),
+            ("@neg_ln2_1@", n(-ln2[0])),
+            ("@neg_ln2_2@", n(-ln2[1])),
             ("@least@", n(terms(-110, -760).into())),
             ("@most@", n(terms(100, 720).into())),
             ("@one@", n(terms(20, 40).into())),

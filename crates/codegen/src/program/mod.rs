@@ -2,6 +2,9 @@
 //!
 //! Sines and cosines of angles that do not wait for others come first, all at once, so that a processor computes several side by
 //! side. A product that is needed once, in a sum, becomes one step with that sum: an instruction of its own on most processors.
+//!
+//! Everything else keeps the order of the algorithm, which is that of its meaning. Compilers order instructions themselves: statements
+//! sorted by depth, by what waits for them, or depth first from the results change times by a few per cent, either way.
 
 use crate::function::Function;
 use crate::graph::{Elementary, Id, Node};

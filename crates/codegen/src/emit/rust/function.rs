@@ -45,28 +45,44 @@ impl Rust {
         );
         let _ = writeln!(text, "pub fn {}({}) {{", identifier(&function.name), arguments.join(", "));
         let body = body(function, program, self);
-        text.push_str(&marked(&body.lines, "    "));
-        for (output, entries) in function.outputs.iter().zip(&body.results) {
-            let entries: Vec<String> = entries.iter().map(|e| self.stored(e)).collect();
-            let name = result_name(function, output);
-            let mut rows: Vec<String> = rows(output, &entries).map(|row| format!("[{}]", row.join(", "))).collect();
-            let _ = match output.columns {
-                None => writeln!(text, "    *{name} = {};", rows.pop().unwrap_or_else(|| "[]".to_owned())),
-                Some(_) => writeln!(
-                    text,
-                    "    *{name} = [\n{}    ];",
-                    marked(&rows.iter().map(|r| format!("{r},")).collect::<Vec<_>>(), "        ")
-                ),
-            };
+        let results: Vec<(String, &Output, &Vec<String>)> =
+            function.outputs.iter().zip(&body.results).map(|(o, e)| (result_name(function, o), o, e)).collect();
+        match self.style.lanes {
+            None => {
+                text.push_str(&marked(&body.lines, "    "));
+                results.iter().for_each(|(name, output, entries)| text.push_str(&whole(name, output, entries)));
+            }
+            Some(lanes) => {
+                let _ = writeln!(text, "    for lane in 0..{lanes} {{");
+                text.push_str(&marked(&body.lines, "        "));
+                results.iter().for_each(|(name, output, entries)| text.push_str(&by_entry(name, output, entries)));
+                text.push_str("    }\n");
+            }
         }
         text.push_str("}\n");
         text
     }
+}
 
-    /// An expression as it goes into an output.
-    fn stored(&self, entry: &str) -> String {
-        if self.style.lanes.is_some() { format!("{entry}.0") } else { entry.to_owned() }
+/// The statement that writes an output.
+fn whole(name: &str, output: &Output, entries: &[String]) -> String {
+    let mut rows: Vec<String> = rows(output, entries).map(|row| format!("[{}]", row.join(", "))).collect();
+    match output.columns {
+        None => format!("    *{name} = {};\n", rows.pop().unwrap_or_else(|| "[]".to_owned())),
+        Some(_) => {
+            rows.iter_mut().for_each(|row| row.push(','));
+            format!("    *{name} = [\n{}    ];\n", marked(&rows, "        "))
+        }
     }
+}
+
+/// The statements that write an output of one state among several.
+fn by_entry(name: &str, output: &Output, entries: &[String]) -> String {
+    let place = |k: usize| match output.columns {
+        None => format!("[{k}]"),
+        Some(columns) => format!("[{}][{}]", k / columns, k % columns),
+    };
+    entries.iter().enumerate().map(|(k, entry)| format!("        {name}{}[lane] = {entry};\n", place(k))).collect()
 }
 
 /// The type of an output.
@@ -88,19 +104,16 @@ pub(super) fn result_name(function: &Function, output: &Output) -> String {
 
 impl Syntax for Rust {
     fn number(&self, x: f64) -> String {
-        let text = constant(x, self.style.precision);
-        if self.style.lanes.is_some() { format!("all({text})") } else { text }
+        constant(x, self.style.precision)
     }
 
     fn input(&self, argument: &str, k: usize) -> String {
-        if self.style.lanes.is_some() { format!("Lanes({argument}[{k}])") } else { format!("{argument}[{k}]") }
+        let lane = if self.style.lanes.is_some() { "[lane]" } else { "" };
+        format!("{argument}[{k}]{lane}")
     }
 
     fn select(&self, [a, b, c, d]: [&str; 4]) -> String {
-        match self.style.lanes {
-            None => format!("if {a} < {b} {{ {c} }} else {{ {d} }}"),
-            Some(_) => format!("select_less({a}, {b}, {c}, {d})"),
-        }
+        format!("if {a} < {b} {{ {c} }} else {{ {d} }}")
     }
 
     fn assign(&self, name: &str, value: &str) -> String {

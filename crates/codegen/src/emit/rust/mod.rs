@@ -1,4 +1,7 @@
 //! Rust without `std` and without dependencies: a file that is a module of a program or a crate by itself.
+//!
+//! Several states side by side are a loop over them around the same statements, innermost in memory: without a branch or a call
+//! in it, it is a loop that compilers make vector instructions of, at once and not operation by operation.
 
 mod function;
 mod helpers;
