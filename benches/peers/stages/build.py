@@ -141,6 +141,7 @@ def casadi_generator():
 def gyroflex_generator():
     """As a user of the command line gets it."""
     cargo(REPOSITORY, "target-gyroflex", None, ["-p", "gyroflex-cli"], "gyroflex", "gyroflex-generator")
+    (GENERATED / "gyroflex").mkdir(parents=True, exist_ok=True)
     for arm in ARMS:
         for language in ("c", "rust"):
             found = subprocess.run(
