@@ -137,7 +137,7 @@ impl ExplicitModel {
             joints.push(joint_law(&law.map(|id| of_inertia.of(*id).unwrap_or_default())));
         }
         let (modal_stiffness, modal_damping) = modal(robot);
-        Ok(Self {
+        let mut out = Self {
             name: robot.name.to_owned(),
             fidelity: robot.fidelity,
             options: options.clone(),
@@ -150,7 +150,28 @@ impl ExplicitModel {
             joints,
             modal_stiffness,
             modal_damping,
-        })
+        };
+        out.prune();
+        Ok(out)
+    }
+
+    /// Drops entries that are nothing but rounding beside those of their row and column on the diagonal.
+    fn prune(&mut self) {
+        let n = self.nv();
+        let own: Vec<f64> = (0..n).map(|i| self.mass(i, i).largest()).collect();
+        let of_motor = |joints: &[JointLaw], i: usize| {
+            joints.get(i).and_then(|joint| joint.drive.as_ref()).map_or(0.0, |drive| drive.reflected_inertia.largest())
+        };
+        for i in 0..n {
+            for j in i..n {
+                let at = self.upper(i, j);
+                self.mass[at].prune_below(ROUNDING * (own[i] * own[j]).sqrt());
+            }
+            for j in 0..n {
+                let scale = (own[i] * of_motor(&self.joints, j)).sqrt();
+                self.coupling[i * n + j].prune_below(ROUNDING * scale);
+            }
+        }
     }
 
     /// Name of the robot.

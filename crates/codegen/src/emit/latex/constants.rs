@@ -37,7 +37,7 @@ pub(super) fn constants(model: &ExplicitModel, lumps: &[Lump]) -> Vec<Constant> 
         })
         .collect();
     let mut add = |name: String, sum: &Sum, unit: &str| {
-        if let Some(value) = plain(model, sum).filter(|value| *value != 0.0) {
+        if let Some(value) = plain(sum).filter(|value| *value != 0.0) {
             out.push(Constant { name, value, unit: unit.to_owned() });
         }
     };
@@ -51,7 +51,7 @@ pub(super) fn constants(model: &ExplicitModel, lumps: &[Lump]) -> Vec<Constant> 
                 add(format!("K_{{3,{k}}}"), &t.cubic, units.cubic);
                 add(format!("D_{{{k}}}"), &t.damping, units.damping);
             }
-            if has_friction(model, &drive.friction) {
+            if has_friction(&drive.friction) {
                 add(format!("N_{{{k}}}"), &drive.gear_ratio, units.ratio);
                 of_friction(&format!("{k}\\mathrm{{m}}"), &drive.friction, &ANGLE, &mut add);
             }
@@ -86,7 +86,7 @@ fn of_friction(index: &str, friction: &Friction<Sum>, units: &Units, add: &mut i
 }
 
 /// Whether there is any.
-pub(super) fn has_friction(_: &ExplicitModel, friction: &Friction<Sum>) -> bool {
+pub(super) fn has_friction(friction: &Friction<Sum>) -> bool {
     friction.dry || !friction.viscous.is_zero()
 }
 
@@ -101,14 +101,11 @@ pub(super) fn modal_index(model: &ExplicitModel, j: usize, k: usize) -> String {
 }
 
 /// The number that a sum is; none if it depends on something.
-pub(super) fn plain(model: &ExplicitModel, sum: &Sum) -> Option<f64> {
+pub(super) fn plain(sum: &Sum) -> Option<f64> {
     match sum.terms() {
         [] => Some(0.0),
         [(m, c)] if m.is_one() => Some(*c),
-        _ => {
-            let _ = model;
-            None
-        }
+        _ => None,
     }
 }
 
@@ -142,8 +139,10 @@ pub(super) fn table(constants: &[Constant]) -> String {
         .iter()
         .map(|c| {
             let unit = if c.unit.is_empty() { String::new() } else { format!("\\ \\mathrm{{{}}}", c.unit) };
-            format!("$\\mathstrut {} = {}{unit}$", c.name, number(c.value))
+            format!("\\mbox{{${} = {}{unit}$}}", c.name, number(c.value))
         })
         .collect();
-    format!("\\begin{{multicols}}{{5}}\\footnotesize\\raggedright\n{}\n\\end{{multicols}}\n", rows.join("\\\\\n"))
+    // Many of them are many short lines.
+    let (columns, size) = if rows.len() > 30 { (6, "scriptsize") } else { (5, "footnotesize") };
+    format!("\\begin{{multicols}}{{{columns}}}\\{size}\\raggedright\n{}\n\\end{{multicols}}\n", rows.join("\\\\\n"))
 }

@@ -3,6 +3,7 @@
 //! Inertia, Coriolis and centrifugal forces, gravity, stiffness and damping, rotors, one section each. Coefficients are lumped constants
 //! `p₁, p₂, …` with a table of their values at the end; parameters that are kept stand by their names.
 
+mod abbreviations;
 mod constants;
 mod lines;
 mod sections;
@@ -14,13 +15,16 @@ use super::{File, Head};
 use crate::explicit::ExplicitModel;
 use sections::Writer;
 
-const PREAMBLE: &str = r"\documentclass[10pt,a4paper]{article}
+const PREAMBLE: &str = r"\documentclass[10pt,a4paper,fleqn]{article}
 \usepackage[margin=16mm]{geometry}
 \usepackage{amsmath,multicol}
 \allowdisplaybreaks
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{3pt}
-\setlength{\columnseprule}{0pt}
+\setlength{\columnsep}{6pt}
+\setlength{\mathindent}{1em}
+\setlength{\multicolsep}{3pt}
+\sloppy
 \pagestyle{empty}
 \makeatletter
 \renewcommand{\section}{\@startsection{section}{1}{0pt}{7pt plus 2pt}{2pt}{\normalfont\normalsize\bfseries}}
@@ -31,11 +35,11 @@ const PREAMBLE: &str = r"\documentclass[10pt,a4paper]{article}
 /// The document, `<robot>.tex`. It needs `amsmath`, `geometry` and `multicol`, which every distribution has.
 pub fn document(model: &ExplicitModel, head: &Head) -> File {
     let (lumped, lumps) = model.lumped();
-    let mut writer = Writer::new(model, &lumped);
+    let writer = Writer::new(model, &lumped);
     let body = writer.body(&lumps);
     let name = symbols::escaped(&head.robot);
     let text = format!(
-        "% {}, {}. {}\n{PREAMBLE}\\begin{{document}}\\small\n{{\\Large Equations of motion of {name}}}\\par\n{}{body}\\end{{document}}\n",
+        "% {}, {}. {}\n{PREAMBLE}\\begin{{document}}\\small\\raggedright\n{{\\Large Equations of motion of {name}}}\\par\n{}{body}\\end{{document}}\n",
         head.robot,
         head.model,
         head.command,
