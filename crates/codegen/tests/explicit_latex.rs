@@ -188,4 +188,15 @@ fn write() {
         let file = document(&arm);
         std::fs::write(format!("{folder}/{}", file.name), file.text).expect("the folder is there");
     }
+    let arm = shipped::planar_2r(Fidelity::Complete);
+    let robot = arm.robot();
+    let head = Head {
+        robot: "planar_2r_kept".to_owned(),
+        model: "complete".to_owned(),
+        command: "gyroflex codegen --keep all".to_owned(),
+    };
+    let options = Options { kept: Parameter::all(&robot), ..Options::default() };
+    let model = ExplicitModel::of(&robot, &options).expect("nothing in it is not explicit");
+    let file = latex::document(&model, &head);
+    std::fs::write(format!("{folder}/{}", file.name), file.text).expect("the folder is there");
 }

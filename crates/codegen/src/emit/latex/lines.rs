@@ -1,7 +1,7 @@
 //! Long equations broken into lines.
 
 /// Width of a line, in tenths of a letter.
-const LINE: usize = 960;
+pub(super) const LINE: usize = 960;
 
 /// `left &= right`, broken before signs where a line is full: outside brackets, if the line is long enough there.
 pub(super) fn equation(left: &str, right: &str) -> String {

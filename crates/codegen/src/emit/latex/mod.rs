@@ -5,8 +5,10 @@
 
 mod abbreviations;
 mod constants;
+mod equations;
 mod lines;
 mod sections;
+mod springs;
 mod symbols;
 mod terms;
 mod velocities;
@@ -16,20 +18,20 @@ use crate::explicit::ExplicitModel;
 use sections::Writer;
 
 const PREAMBLE: &str = r"\documentclass[10pt,a4paper,fleqn]{article}
-\usepackage[margin=16mm]{geometry}
+\usepackage[hmargin=16mm,vmargin=12mm]{geometry}
 \usepackage{amsmath,multicol}
 \allowdisplaybreaks
 \setlength{\parindent}{0pt}
-\setlength{\parskip}{3pt}
+\setlength{\parskip}{2pt}
 \setlength{\columnsep}{6pt}
 \setlength{\mathindent}{1em}
 \setlength{\multicolsep}{3pt}
 \sloppy
 \pagestyle{empty}
 \makeatletter
-\renewcommand{\section}{\@startsection{section}{1}{0pt}{7pt plus 2pt}{2pt}{\normalfont\normalsize\bfseries}}
+\renewcommand{\section}{\@startsection{section}{1}{0pt}{5pt plus 2pt}{1pt}{\normalfont\normalsize\bfseries}}
 \makeatother
-\AtBeginDocument{\abovedisplayskip=3pt plus 2pt \belowdisplayskip=3pt plus 2pt \abovedisplayshortskip=2pt \belowdisplayshortskip=3pt \jot=2pt}
+\AtBeginDocument{\abovedisplayskip=3pt plus 2pt \belowdisplayskip=3pt plus 2pt \abovedisplayshortskip=2pt \belowdisplayshortskip=3pt \jot=1pt}
 ";
 
 /// The document, `<robot>.tex`. It needs `amsmath`, `geometry` and `multicol`, which every distribution has.

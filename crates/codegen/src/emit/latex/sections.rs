@@ -1,7 +1,7 @@
 //! The sections of the document.
 
 use super::abbreviations::abbreviate;
-use super::constants::{constants, has_friction, modal_index, plain, table};
+use super::constants::{constants, has_friction, table};
 use super::lines::{aligned, equation, gathered, width};
 use super::terms::{joined, sum};
 use super::{symbols, velocities};
@@ -13,7 +13,7 @@ use std::fmt::Write;
 const ENTRY: usize = 300;
 
 pub(super) struct Writer<'a> {
-    model: &'a ExplicitModel,
+    pub(super) model: &'a ExplicitModel,
     /// Entries of inertia that are not zero, by row and column.
     mass: Vec<((usize, usize), String)>,
     coupling: Vec<((usize, usize), String)>,
@@ -120,107 +120,29 @@ impl<'a> Writer<'a> {
         out += &self.velocity();
         out += &self.gravity();
         out += &self.springs();
-        let constants = constants(self.model, lumps);
-        if !constants.is_empty() {
-            out += "\\section*{Constants}\n";
-            out += &table(&constants);
-        }
+        out += &table(&constants(self.model, lumps));
         out
     }
 
-    fn has_gravity(&self) -> bool {
+    pub(super) fn has_gravity(&self) -> bool {
         !self.model.potential().is_zero()
     }
 
-    fn has_velocity(&self) -> bool {
+    pub(super) fn has_velocity(&self) -> bool {
         !self.velocities.is_empty()
     }
 
-    fn has_motor_velocity(&self) -> bool {
+    pub(super) fn has_motor_velocity(&self) -> bool {
         !self.motor_velocities.is_empty()
     }
 
     /// Which joints have friction, on the link side and on the motor side.
-    fn friction(&self) -> [bool; 2] {
+    pub(super) fn friction(&self) -> [bool; 2] {
         let joints = self.model.joints();
         [
             joints.iter().any(|joint| has_friction(&joint.friction)),
             joints.iter().filter_map(|joint| joint.drive.as_ref()).any(|drive| has_friction(&drive.friction)),
         ]
-    }
-
-    /// The matrix form.
-    fn equations(&self) -> String {
-        let model = self.model;
-        let (elastic, coupled, bends) = (model.is_elastic(), model.is_coupled(), model.modes() > 0);
-        let [link_friction, motor_friction] = self.friction();
-        let pair = |a: &str, b: &str| {
-            if bends { format!("\\begin{{bmatrix}}{a}\\\\{b}\\end{{bmatrix}}") } else { a.to_owned() }
-        };
-        let mut left = if bends {
-            "\\begin{bmatrix}M_{rr}&M_{rf}\\\\M_{rf}^T&M_{ff}\\end{bmatrix}\\begin{bmatrix}\\ddot q\\\\\\ddot\\eta\\end{bmatrix}".to_owned()
-        } else {
-            "M(q)\\,\\ddot q".to_owned()
-        };
-        if coupled {
-            let s = if bends { pair("S_r", "S_f") } else { "S".to_owned() };
-            let _ = write!(left, " + {s}{}\\ddot\\theta", if bends { "" } else { "(q)\\," });
-        }
-        if self.has_velocity() {
-            let arguments = if coupled { "(q,\\dot q,\\dot\\theta)" } else { "(q,\\dot q)" };
-            let _ = write!(left, " + {}", if bends { pair("h_r", "h_f") } else { format!("h{arguments}") });
-        }
-        if self.has_gravity() {
-            let _ = write!(left, " + {}", if bends { pair("g_r", "g_f") } else { "g(q)".to_owned() });
-        }
-        if bends {
-            let damped = model.modal_damping.iter().any(|d| *d != 0.0);
-            let dampers = if damped {
-                " + \\begin{bmatrix}0&0\\\\0&D_f\\end{bmatrix}\\begin{bmatrix}\\dot q\\\\\\dot\\eta\\end{bmatrix}"
-            } else {
-                ""
-            };
-            let _ = write!(
-                left,
-                " + \\begin{{bmatrix}}0&0\\\\0&K_f\\end{{bmatrix}}\\begin{{bmatrix}}q\\\\\\eta\\end{{bmatrix}}{dampers}"
-            );
-        }
-        let mut torque = if elastic { "\\tau_J" } else { "\\tau" }.to_owned();
-        if link_friction {
-            torque += " - f(\\dot q)";
-        }
-        if motor_friction && !elastic {
-            torque += " - f_\\mathrm{m}(\\dot q)";
-        }
-        let mut lines = vec![format!("{left} &= {}", pair(&torque, "0"))];
-        if elastic {
-            let transposed = match (coupled, bends) {
-                (false, _) => String::new(),
-                (true, false) => "S^T(q)\\,\\ddot q + ".to_owned(),
-                (true, true) => {
-                    "\\begin{bmatrix}S_r^T&S_f^T\\end{bmatrix}\\begin{bmatrix}\\ddot q\\\\\\ddot\\eta\\end{bmatrix} + "
-                        .to_owned()
-                }
-            };
-            let h = if self.has_motor_velocity() { " + h_\\theta(q,\\dot q)" } else { "" };
-            let f = if motor_friction { " - f_\\mathrm{m}(\\dot\\theta)" } else { "" };
-            lines.push(format!("{transposed}B\\,\\ddot\\theta{h} &= \\tau - \\tau_J{f}"));
-            lines.push(format!("\\tau_J &= {}", self.transmitted()));
-        }
-        aligned(&lines)
-    }
-
-    /// The law of the transmissions.
-    fn transmitted(&self) -> String {
-        let all = || (0..self.model.joints().len()).filter_map(|i| self.model.transmission(i));
-        let mut law = "K\\,(\\theta - q)".to_owned();
-        if all().any(|t| !t.cubic.is_zero()) {
-            law += " + K_3\\,(\\theta - q)^3";
-        }
-        if all().any(|t| !t.damping.is_zero()) {
-            law += " + D\\,(\\dot\\theta - \\dot q)";
-        }
-        law
     }
 
     fn inertia(&self) -> String {
@@ -270,7 +192,7 @@ impl<'a> Writer<'a> {
             return String::new();
         }
         let title = "\\section*{Coriolis and centrifugal forces}\n";
-        format!("{title}By the Christoffel symbols of the whole inertia matrix.\n{}", aligned(&equations))
+        format!("{title}From the Christoffel symbols of the whole inertia matrix.\n{}", aligned(&equations))
     }
 
     fn gravity(&self) -> String {
@@ -280,100 +202,6 @@ impl<'a> Writer<'a> {
         let entries = self.gravity.iter().map(|(i, text)| (format!("g_{{{}}}", i + 1), text.clone()));
         let title = "\\section*{Gravity}\n";
         format!("{title}The derivatives of its potential energy.\n{}", aligned(&gathered(&entries.collect::<Vec<_>>())))
-    }
-
-    /// Stiffness, damping, friction, reflected inertia.
-    fn springs(&self) -> String {
-        let model = self.model;
-        let named = |letter: &str, of: &dyn Fn(usize) -> Option<Sum>| {
-            let joints = 0..model.joints().len();
-            let entries: Vec<String> = joints
-                .map(|i| match of(i) {
-                    Some(sum) if !sum.is_zero() => match plain(&sum) {
-                        Some(_) => format!("{letter}{}}}", i + 1),
-                        None => joined(&super::terms::sum(model, &sum)),
-                    },
-                    _ => "0".to_owned(),
-                })
-                .collect();
-            (entries.iter().any(|e| e != "0")).then(|| format!("\\operatorname{{diag}}({})", entries.join(", ")))
-        };
-        let transmission = |of: fn(&crate::explicit::TransmissionLaw) -> &Sum| {
-            move |i: usize| model.transmission(i).map(|t| of(t).clone())
-        };
-        let mut diagonals = Vec::new();
-        for (name, diagonal) in [
-            ("B", named("B_{", &|i| model.reflected_inertia(i).cloned())),
-            ("K", named("K_{", &transmission(|t| &t.stiffness))),
-            ("K_3", named("K_{3,", &transmission(|t| &t.cubic))),
-            ("D", named("D_{", &transmission(|t| &t.damping))),
-        ] {
-            diagonals.extend(diagonal.map(|d| (name.to_owned(), d)));
-        }
-        for (name, letter, matrix) in [("K_f", "k", &model.modal_stiffness), ("D_f", "d", &model.modal_damping)] {
-            diagonals.extend(self.modal(matrix, letter).map(|d| (name.to_owned(), d)));
-        }
-        let mut rows = gathered(&diagonals);
-        rows.extend(self.friction_laws());
-        if rows.is_empty() {
-            return String::new();
-        }
-        let (title, said) = match (model.is_elastic(), model.modes() > 0) {
-            (true, _) => ("Rotors, stiffness and damping", "On the link side of the gears."),
-            (false, true) => ("Stiffness and damping", "Of the modes, each on its own where they are eigenfunctions."),
-            (false, false) => ("Friction", "Against the motion."),
-        };
-        format!("\\section*{{{title}}}\n{said}\n{}", aligned(&rows))
-    }
-
-    fn modal(&self, matrix: &[f64], letter: &str) -> Option<String> {
-        let n = self.model.modes();
-        if matrix.iter().all(|x| *x == 0.0) {
-            return None;
-        }
-        let entry = |j: usize, k: usize| {
-            let (j, k) = (j.min(k), j.max(k));
-            if matrix[j * n + k] == 0.0 {
-                "0".to_owned()
-            } else {
-                format!("{letter}_{{{}}}", modal_index(self.model, j, k))
-            }
-        };
-        let diagonal = (0..n).all(|j| (0..n).all(|k| j == k || matrix[j * n + k] == 0.0));
-        if diagonal {
-            let entries: Vec<String> = (0..n).map(|j| entry(j, j)).collect();
-            return Some(format!("\\operatorname{{diag}}({})", entries.join(", ")));
-        }
-        let rows: Vec<String> = (0..n).map(|j| (0..n).map(|k| entry(j, k)).collect::<Vec<_>>().join(" & ")).collect();
-        Some(format!("\\begin{{bmatrix}}{}\\end{{bmatrix}}", rows.join("\\\\")))
-    }
-
-    fn friction_laws(&self) -> Vec<String> {
-        let [link, motor] = self.friction();
-        let dry = |friction: &gyroflex::model::Friction<Sum>| friction.dry;
-        let joints = self.model.joints();
-        let any_dry = joints.iter().any(|j| dry(&j.friction) || j.drive.as_ref().is_some_and(|d| dry(&d.friction)));
-        let law = |v: &str, i: &str| {
-            if any_dry {
-                format!(
-                    "b_{{{i}}}{v} + \\bigl(F_{{{i}}} + \\Delta F_{{{i}}}\\,e^{{-({v}/w_{{{i}}})^2}}\\bigr)\\tanh({v}/v_{{{i}}})"
-                )
-            } else {
-                format!("b_{{{i}}}{v}")
-            }
-        };
-        let mut lines = Vec::new();
-        if link {
-            lines.push(("f_i".to_owned(), law("\\dot q_i", "i")));
-        }
-        if motor {
-            let speed = if self.model.is_elastic() { "\\dot\\theta_i" } else { "\\dot q_i" };
-            lines.push((
-                "f_{\\mathrm{m},i}".to_owned(),
-                format!("N_i\\bigl({}\\bigr),\\quad v = N_i{speed}", law("v", "i\\mathrm{m}")),
-            ));
-        }
-        gathered(&lines)
     }
 }
 
