@@ -6,6 +6,7 @@ use arms::{Arm, numbers, options, seeds, shipped};
 use gyroflex::model::Fidelity;
 use gyroflex_codegen::explicit::{ExplicitModel, Options};
 use gyroflex_codegen::function::Function;
+use gyroflex_codegen::optimise::optimise;
 use gyroflex_codegen::quantity::{Options as Choices, Quantity, function};
 use gyroflex_codegen::weigh::{Motion, Place, rank, simplify};
 use gyroflex_testkit::random::Options as Random;
@@ -254,6 +255,8 @@ fn figures() {
         for quantity in [Quantity::Forward, Quantity::Inverse] {
             let library = function(&arm.robot(), quantity, &Choices::default()).expect("every robot has it");
             println!("{}: {} operations by recursion", quantity.name(), library.operations().total());
+            let short = optimise(&whole.function(quantity).expect("explicit equations say it"));
+            println!("{}: {} operations of explicit equations, optimised", quantity.name(), short.operations().total());
         }
         println!("| tolerance | terms | restored | forward, inverse | torque error | acceleration error | uncoupled |");
         for tolerance in [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1] {

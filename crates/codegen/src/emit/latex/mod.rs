@@ -31,7 +31,10 @@ const PREAMBLE: &str = r"\documentclass[10pt,a4paper,fleqn]{article}
 \makeatletter
 \renewcommand{\section}{\@startsection{section}{1}{0pt}{5pt plus 2pt}{1pt}{\normalfont\normalsize\bfseries}}
 \makeatother
-\AtBeginDocument{\abovedisplayskip=3pt plus 2pt \belowdisplayskip=3pt plus 2pt \abovedisplayshortskip=2pt \belowdisplayshortskip=3pt \jot=1pt}
+";
+
+/// After the size of the text, which sets its own.
+const SPACING: &str = r"\abovedisplayskip=3pt plus 2pt \belowdisplayskip=3pt plus 2pt \abovedisplayshortskip=2pt \belowdisplayshortskip=3pt \jot=1pt
 ";
 
 /// The document, `<robot>.tex`. It needs `amsmath`, `geometry` and `multicol`, which every distribution has.
@@ -41,7 +44,7 @@ pub fn document(model: &ExplicitModel, head: &Head) -> File {
     let body = writer.body(&lumps);
     let name = symbols::escaped(&head.robot);
     let text = format!(
-        "% {}, {}. {}\n{PREAMBLE}\\begin{{document}}\\small\\raggedright\n{{\\Large Equations of motion of {name}}}\\par\n{}{body}\\end{{document}}\n",
+        "% {}, {}. {}\n{PREAMBLE}\\begin{{document}}\\small\\raggedright\n{SPACING}{{\\Large Equations of motion of {name}}}\\par\n{}{body}\\end{{document}}\n",
         head.robot,
         head.model,
         head.command,

@@ -7,6 +7,7 @@ use super::terms::{joined, sum};
 use super::{symbols, velocities};
 use crate::emit::Head;
 use crate::explicit::{Coordinate, ExplicitModel, Lump, Sum, VelocityTerm};
+use crate::robot::Parameter;
 use std::fmt::Write;
 
 /// Widest matrix entry that still stands in a matrix, in tenths of a letter.
@@ -102,6 +103,13 @@ impl<'a> Writer<'a> {
         let circular = |sum: &Sum| sum.terms().iter().any(|(m, _)| m.harmonics(model.layout()).next().is_some());
         if model.mass.iter().chain(&model.coupling).chain([model.potential()]).any(circular) {
             out += "$c_i = \\cos q_i$, $s_i = \\sin q_i$; indices add up: $c_{ij} = \\cos(q_i + q_j)$.\n";
+        }
+        let kept = &model.options().kept;
+        if !kept.is_empty() {
+            let say = |p: &Parameter| {
+                format!("${}$ \\textsf{{{}}}", symbols::parameter(model, p), symbols::escaped(p.name()))
+            };
+            let _ = writeln!(out, "Kept: {}.", kept.iter().map(say).collect::<Vec<_>>().join(", "));
         }
         if model.modes() > 0 {
             let degree = model.options().degree;
