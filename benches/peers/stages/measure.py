@@ -20,12 +20,12 @@ COUNTS = HOME / "instructions.json"
 class Program:
     """A worker process: it waits for the name of a row and answers with the time of a short batch."""
 
-    def __init__(self, name, core):
+    def __init__(self, name, core, robots=ROBOTS):
         self.name = name
         path = BIN / name
         if not path.exists():
             sys.exit(f"{path} is missing: run the stage `build`")
-        self.process = subprocess.Popen([str(path), str(MODELS), *ROBOTS], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        self.process = subprocess.Popen([str(path), str(MODELS), *robots], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         text=True, bufsize=1)
         os.sched_setaffinity(self.process.pid, {core})
         self.errors = {}
@@ -62,16 +62,14 @@ def library():
     return commit + ("" if same else " with changes")
 
 
-def measure(options):
+def side_by_side(workers, wanted, options):
+    """Rounds in which every program has its turn with every row that is wanted; what the run was like, and the times."""
     started = datetime.now(timezone.utc)
-    names = [name for name, _ in programs() if not options.rows or (BIN / name).exists()]
-    workers = [Program(name, options.core) for name in names]
-    ours = {family(row) for worker in workers if worker.name == "gyroflex" for row in worker.errors}
     # Rows of one robot and algorithm stand together, so that what is compared is measured within a tenth of a second.
     turns = defaultdict(list)
     for worker in workers:
         for row in worker.errors:
-            if family(row) in ours and options.rows in row:
+            if wanted(worker, row) and options.rows in row:
                 turns[family(row)].append((worker, row))
     batches = defaultdict(list)
     load = os.getloadavg()[0]
@@ -90,16 +88,29 @@ def measure(options):
     rows = [{"program": program, "row": row, "error": errors[program, row],
              "fastest": [round(b[0], 2) for b in found], "middle": [round(b[1], 2) for b in found]}
             for (program, row), found in batches.items()]
+    about = {"library": library(), "started": started.strftime("%Y-%m-%d %H:%M UTC"), "rounds": options.rounds, "core": options.core,
+             "load": [round(load, 2), round(os.getloadavg()[0], 2)]}
+    return about, rows
+
+
+def kept(about, rows, stage, options, path):
+    """Writes a whole run to a file; of some rows, prints the times and keeps nothing."""
     if options.rows:
         for entry in sorted(rows, key=lambda entry: family(entry["row"])):
             middle = statistics.median(entry["middle"])
             print(f"{entry['row']:40} {entry['program']:24} {min(entry['fastest']):10,.0f} ns, median {middle:10,.0f} ns")
         return
-    about = {"library": library(), "started": started.strftime("%Y-%m-%d %H:%M UTC"), "rounds": options.rounds, "core": options.core,
-             "load": [round(load, 2), round(os.getloadavg()[0], 2)],
-             "command": "benches/peers/run measure" + (f" --rounds {options.rounds}" if options.rounds != 100 else "")}
-    RESULTS.write_text(json.dumps({"about": about, "rows": rows}))
-    print(f"written to {RESULTS}")
+    about["command"] = f"benches/peers/run {stage}" + (f" --rounds {options.rounds}" if options.rounds != 100 else "")
+    path.write_text(json.dumps({"about": about, "rows": rows}))
+    print(f"written to {path}")
+
+
+def measure(options):
+    names = [name for name, _ in programs() if not options.rows or (BIN / name).exists()]
+    workers = [Program(name, options.core) for name in names]
+    ours = {family(row) for worker in workers if worker.name == "gyroflex" for row in worker.errors}
+    about, rows = side_by_side(workers, lambda _, row: family(row) in ours, options)
+    kept(about, rows, "measure", options, RESULTS)
 
 
 def collected(program, row, calls):

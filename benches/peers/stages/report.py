@@ -1,20 +1,15 @@
-"""Prints the ratios and puts the tables into docs/benchmarks.md, between two marks."""
+"""Prints the ratios and puts the tables of everything measured into docs/benchmarks.md, between two marks."""
 
 import json
-import platform
 import re
-import statistics
-import subprocess
 import sys
 
-from build import CXX_FLAGS, HERE, HOME, PACKAGES, REPOSITORY
+import straight_line
+from build import CXX_FLAGS, HERE, PACKAGES
 from measure import COUNTS, RESULTS, ROBOTS, family
+from tables import ALGORITHMS, DOCUMENT, details, listed, measured, ns, put, ratio, said, system, table, title
 
-DOCUMENT = REPOSITORY / "docs/benchmarks.md"
-BEGIN, END = "<!-- measured by benches/peers/run: begin -->", "<!-- end -->"
-ALGORITHMS = {"aba": "forward dynamics", "rnea": "inverse dynamics", "crba": "inertia matrix", "fk": "link poses",
-              "aba_derivatives": "derivatives of forward dynamics", "rnea_derivatives": "derivatives of inverse dynamics",
-              "constrained": "forward dynamics on two feet"}
+BEGIN = "<!-- measured by benches/peers/run: begin -->"
 PEERS = {"Pinocchio": "pinocchio", "MuJoCo": "mujoco", "dynibo": "rust-peers", "rapier3d": "rust-peers"}
 BUILDS = {"gyroflex": "default build", "gyroflex-x86-64-v3": "x86-64-v3 build", "gyroflex-native": "native build"}
 
@@ -22,35 +17,9 @@ BUILDS = {"gyroflex": "default build", "gyroflex-x86-64-v3": "x86-64-v3 build", 
 WAYS = ["", "8 lanes", "16 lanes of f32"]
 
 
-def said(*command):
-    try:
-        answer = subprocess.run(command, capture_output=True, text=True, cwd=REPOSITORY)
-    except FileNotFoundError:
-        return "not installed"
-    return (answer.stdout.strip().splitlines() or ["unknown"])[0]
-
-
-def ns(number):
-    return f"{number:,.0f}" if number >= 100 else f"{number:.1f}"
-
-
-def table(head, rows):
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
 def of_peer(peer, entry):
     is_row = {"dynibo": "dynibo" in entry["row"], "rapier3d": "rapier" in entry["row"]}.get(peer, True)
     return is_row and entry["program"].startswith(PEERS[peer])
-
-
-def title(robot):
-    return robot.replace("_flex", ", with rotors")
-
-
-def ratio(entry, ours):
-    """How many times as long as ours, the median over the rounds: both had the same moment of the machine."""
-    return statistics.median(theirs / mine for theirs, mine in zip(entry["fastest"], ours["fastest"]))
 
 
 def comparison(entries):
@@ -69,30 +38,6 @@ def comparison(entries):
                 cells.append("–" if best is None else f"{ns(min(best['fastest']))} ({ratio(best, ours['gyroflex']):.1f}×)")
             rows.append(cells)
     return table(["", *(f"gyroflex, {build}" for build in BUILDS.values()), *PEERS], rows)
-
-
-def variant(entry):
-    call = entry["row"].partition(":")[2]
-    return entry["program"] + (f", {call}" if call else "")
-
-
-def details(entries, algorithm, counts):
-    """Every program and call: fastest, median, and instructions where they are counted."""
-    mine = [e for e in entries if family(e["row"]).endswith(f"/{algorithm}")]
-    robots = [r for r in ROBOTS if any(e["row"].startswith(f"{r}/") for e in mine)]
-    rows = []
-    for name in sorted({variant(e) for e in mine}):
-        cells = [name]
-        for robot in robots:
-            entry = next((e for e in mine if variant(e) == name and e["row"].startswith(f"{robot}/")), None)
-            if entry is None:
-                cells.append("–")
-                continue
-            count = counts.get((entry["program"], entry["row"]))
-            cells.append(f"{ns(min(entry['fastest']))} ({ns(statistics.median(entry['middle']))})"
-                         + (f" · {count:,}" if count else ""))
-        rows.append(cells)
-    return table([ALGORITHMS[algorithm], *map(title, robots)], rows)
 
 
 def per_link(entries):
@@ -126,18 +71,8 @@ def throughput(entries):
     return table(["million states a second", *ours, "Pinocchio", "MuJoCo", "dynibo"], rows)
 
 
-def machine():
-    with open("/proc/cpuinfo") as file:
-        fields = dict(re.findall(r"^(model name|cpu family|model|stepping)\s*: (.*)$", file.read(), re.M))
-    return f"{fields['model name']} (family {fields['cpu family']}, model {fields['model']}, stepping {fields['stepping']})"
-
-
 def is_derivative(entry):
     return family(entry["row"]).endswith("_derivatives")
-
-
-def listed(errors):
-    return ", ".join(f"{name} {error:.0e}" for name, error in errors.items())
 
 
 def circumstances(about, entries):
@@ -151,10 +86,8 @@ def circumstances(about, entries):
               for name, is_mine in (("gyroflex", lambda e: e["program"] in BUILDS),
                                     ("Pinocchio", lambda e: of_peer("Pinocchio", e)))}
     return "\n".join([
-        f"* Measured {about['started']} with `{about['command']}` on the library of commit {about['library']}, "
-        f"{about['rounds']} rounds, all programs pinned to core {about['core']}, load average {about['load'][0]} before and "
-        f"{about['load'][1]} after.",
-        f"* Machine: {machine()}, {platform.system()} {platform.release()}.",
+        measured(about, "all programs"),
+        system(),
         f"* Compilers: {said('rustc', '--version')}; {said('clang++', '--version')}.",
         f"* Versions: {', '.join(package.replace('==', ' ') for package in PACKAGES)}; "
         f"{', '.join(f'{name} {version}' for name, version in crates)}.",
@@ -167,8 +100,16 @@ def circumstances(about, entries):
 
 
 def report(_):
-    if not RESULTS.exists():
+    sections = [(RESULTS, whole), (straight_line.RESULTS, straight_line.section)]
+    if not any(results.exists() for results, _ in sections):
         sys.exit("nothing is measured yet: run the stage `measure` first")
+    for results, section in sections:
+        if results.exists():
+            section()
+            print(f"\nwritten to {DOCUMENT} and, in full, {results}")
+
+
+def whole():
     found = json.loads(RESULTS.read_text())
     entries = found["rows"]
     counted = json.loads(COUNTS.read_text()) if COUNTS.exists() else []
@@ -185,10 +126,4 @@ def report(_):
     parts += [details(entries, algorithm, counts) for algorithm in ALGORITHMS]
     parts += ["Chains and binary trees of any size, every joint with a rotor behind an elastic transmission, gyroflex alone:",
               per_link(entries)]
-    text = DOCUMENT.read_text()
-    before, _, rest = text.partition(BEGIN)
-    _, mark, after = rest.partition(END)
-    if not mark:
-        sys.exit(f"{DOCUMENT} has no place for the tables: it needs the lines `{BEGIN}` and `{END}`")
-    DOCUMENT.write_text(before + BEGIN + "\n\n" + "\n\n".join(parts) + "\n\n" + END + after)
-    print(f"\nwritten to {DOCUMENT} and, in full, {HOME / 'results.json'}")
+    put(BEGIN, parts)

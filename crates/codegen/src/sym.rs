@@ -12,6 +12,8 @@ thread_local! {
 
 /// An expression. Every algorithm of the core runs on it unchanged, and what it leaves in its results are formulas.
 ///
+/// Every operation is a subroutine: algorithms that are inlined to the last operation would be compiled for minutes otherwise.
+///
 /// A symbol is of use inside the [`trace`] in which it was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Sym(Id);
@@ -48,6 +50,7 @@ macro_rules! operator {
     ($trait:ident, $method:ident, $assign:ident, $assign_method:ident) => {
         operator!($trait, $method);
         impl $assign for Sym {
+            #[inline(never)]
             fn $assign_method(&mut self, b: Self) {
                 *self = $trait::$method(*self, b);
             }
@@ -56,6 +59,7 @@ macro_rules! operator {
     ($trait:ident, $method:ident) => {
         impl $trait for Sym {
             type Output = Self;
+            #[inline(never)]
             fn $method(self, b: Self) -> Self {
                 Self(on(|g| g.$method(self.0, b.0)))
             }
@@ -69,6 +73,7 @@ operator!(Div, div);
 
 impl Neg for Sym {
     type Output = Self;
+    #[inline(never)]
     fn neg(self) -> Self {
         Self(on(|g| g.neg(self.0)))
     }
@@ -80,28 +85,39 @@ impl Scalar for Sym {
     fn from_param(x: Self) -> Self {
         x
     }
+    #[inline(never)]
     fn from_f64(x: f64) -> Self {
         Self(on(|g| g.constant(x)))
+    }
+    #[inline(never)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
     }
     fn is_finite(self) -> bool {
         true
     }
+    #[inline(never)]
     fn sqrt(self) -> Self {
         Self(on(|g| g.call(Elementary::Sqrt, self.0)))
     }
+    #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = on(|g| g.sin_cos(self.0));
         (Self(sin), Self(cos))
     }
+    #[inline(never)]
     fn atan2(self, x: Self) -> Self {
         Self(on(|g| g.atan2(self.0, x.0)))
     }
+    #[inline(never)]
     fn tanh(self) -> Self {
         Self(on(|g| g.call(Elementary::Tanh, self.0)))
     }
+    #[inline(never)]
     fn exp(self) -> Self {
         Self(on(|g| g.call(Elementary::Exp, self.0)))
     }
+    #[inline(never)]
     fn select_less(self, threshold: Self, less: Self, otherwise: Self) -> Self {
         Self(on(|g| g.select_less(self.0, threshold.0, less.0, otherwise.0)))
     }

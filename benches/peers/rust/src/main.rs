@@ -3,7 +3,7 @@
 mod dynibo_fixed;
 mod dynibo_floating;
 #[path = "../../../src/peers/mod.rs"]
-#[allow(dead_code)] // shared with gyroflex's program, which has other needs
+#[allow(dead_code, unused_imports)] // shared with gyroflex's program, which has other needs
 mod peers;
 mod rapier;
 

@@ -1,11 +1,11 @@
 //! Derivatives of forward and inverse dynamics of one robot of the comparison.
 
-use crate::robot::{Point, Robot};
+use crate::robot::Robot;
 use gyroflex::dynamics::{
     Acceleration, DerivativeScratch, External, Forward, ForwardDerivatives, InverseDerivatives, State,
     derivative_matrix_len, forward_derivatives, inverse_derivatives,
 };
-use gyroflex_benches::peers::Worker;
+use gyroflex_benches::peers::{Point, Worker};
 use std::cell::RefCell;
 use std::hint::black_box;
 use std::path::Path;

@@ -6,21 +6,10 @@ use gyroflex::dynamics::{
 };
 use gyroflex::model::{Fidelity, Model};
 use gyroflex::spatial::Transform;
-use gyroflex_benches::peers::{Tree, error};
+use gyroflex_benches::peers::{Coordinates, Point, Tree, error};
 use gyroflex_benches::{Lane, STATES, load};
 use std::hint::black_box;
 use std::path::Path;
-
-/// As many states as a number holds, in our coordinates: motors reflected, twists with the angular part first.
-pub struct Point<T> {
-    pub q: Vec<T>,
-    pub qd: Vec<T>,
-    pub theta: Vec<T>,
-    pub thetad: Vec<T>,
-    pub tau: Vec<T>,
-    pub qdd: Vec<T>,
-    pub thetadd: Vec<T>,
-}
 
 pub struct Robot<T: Lane> {
     pub tree: Tree,
@@ -28,13 +17,12 @@ pub struct Robot<T: Lane> {
     aba: Vec<AbaScratch<T>>,
     rnea: Vec<RneaScratch<T>>,
     crba: Vec<CrbaScratch<T>>,
+    /// As many states each as a number holds.
     pub points: Vec<Point<T>>,
     out: [Vec<T>; 3],
     matrices: [Vec<T>; 3],
     poses: Vec<Transform<T>>,
-    /// Indices of our coordinates in the tree's velocities: of the links, and of their rotors where they have one.
-    links: Vec<usize>,
-    rotors: Vec<Option<usize>>,
+    pub coordinates: Coordinates,
 }
 
 impl<T: Lane> Robot<T> {
@@ -42,15 +30,6 @@ impl<T: Lane> Robot<T> {
         let tree = Tree::read(folder, name);
         let model: Model<T::Param> = load(&folder.join(format!("{name}.yaml"))).lower(Fidelity::Complete);
         let (n, nv) = (model.bodies().len(), model.nv());
-        // The tree's twists have the linear part first.
-        let mut links: Vec<usize> = if tree.floating() { vec![3, 4, 5, 0, 1, 2] } else { Vec::new() };
-        if tree.springs.is_empty() {
-            links.extend(links.len()..nv);
-        } else {
-            links.extend(tree.springs.iter().map(|s| s.link_v));
-        }
-        let base = nv - tree.springs.len();
-        let rotors = (0..nv).map(|k| Some(tree.springs.get(k.checked_sub(base)?)?.rotor_v)).collect();
         let mut robot = Self {
             out: std::array::from_fn(|_| vec![T::zero(); nv]),
             matrices: [vec![T::zero(); nv * nv], vec![T::zero(); nv * nv], vec![T::zero(); nv]],
@@ -59,10 +38,9 @@ impl<T: Lane> Robot<T> {
             rnea: vec![RneaScratch::new(); n],
             crba: vec![CrbaScratch::new(); n],
             points: Vec::new(),
+            coordinates: Coordinates::of(&tree),
             tree,
             model,
-            links,
-            rotors,
         };
         robot.points = (0..STATES / T::WIDTH).map(|k| robot.points_from(k * T::WIDTH)).collect();
         robot
@@ -75,7 +53,8 @@ impl<T: Lane> Robot<T> {
 
     /// The states from `first` on, side by side.
     fn points_from(&self, first: usize) -> Point<T> {
-        let points: Vec<Point<f64>> = (first..first + T::WIDTH).map(|k| self.point(k)).collect();
+        let points: Vec<Point<f64>> =
+            (first..first + T::WIDTH).map(|k| self.coordinates.point(&self.tree, k)).collect();
         let gather = |part: fn(&Point<f64>) -> &Vec<f64>| {
             (0..part(&points[0]).len()).map(|i| T::gather(|lane| part(&points[lane])[i])).collect()
         };
@@ -90,48 +69,9 @@ impl<T: Lane> Robot<T> {
         }
     }
 
-    fn point(&self, k: usize) -> Point<f64> {
-        let [q, v, a, u] = self.tree.state(k);
-        let lead = self.tree.nq - self.tree.nv;
-        let of_links = |x: &[f64]| self.of_links(x);
-        let of_rotors = |x: &[f64], shift: usize| self.of_rotors(x, shift);
-        let joints = self.links.iter().skip(if lead > 0 { 6 } else { 0 }).map(|&i| q[i + lead]);
-        let motors = of_links(u).into_iter().zip(&self.rotors);
-        Point {
-            q: q[..if lead > 0 { 7 } else { 0 }].iter().copied().chain(joints).collect(),
-            qd: of_links(v),
-            theta: of_rotors(q, lead),
-            thetad: of_rotors(v, 0),
-            tau: motors.map(|(on_link, r)| r.map_or(on_link, |i| u[i] * self.tree.gears[i])).collect(),
-            qdd: of_links(a),
-            thetadd: of_rotors(a, 0),
-        }
-    }
-
-    fn of_links(&self, x: &[f64]) -> Vec<f64> {
-        self.links.iter().map(|&i| x[i]).collect()
-    }
-
-    /// Motion of the rotors on the link side of their gears.
-    fn of_rotors(&self, x: &[f64], shift: usize) -> Vec<f64> {
-        self.rotors.iter().map(|r| r.map_or(0.0, |i| x[i + shift] / self.tree.gears[i])).collect()
-    }
-
-    /// Velocities of links and motors, from those of the tree.
-    pub fn velocities(&self, v: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        (self.of_links(v), self.of_rotors(v, 0))
-    }
-
-    /// Back to the tree's coordinates; `motion` of rotors grows through the gear, their torque shrinks.
+    /// Back to the tree's coordinates.
     pub fn tree_order(&self, links: &[f64], rotors: &[f64], motion: bool) -> Vec<f64> {
-        let mut all = vec![0.0; self.tree.nv];
-        for (k, (&i, rotor)) in self.links.iter().zip(&self.rotors).enumerate() {
-            all[i] = links[k];
-            if let Some(r) = *rotor {
-                all[r] = if motion { rotors[k] * self.tree.gears[r] } else { rotors[k] / self.tree.gears[r] };
-            }
-        }
-        all
+        self.coordinates.tree_order(&self.tree, links, rotors, motion)
     }
 
     /// Numbers of state `k` among those computed last.
@@ -154,7 +94,7 @@ impl<T: Lane> Robot<T> {
 
     pub fn forward_error(&mut self, k: usize) -> f64 {
         let [qdd, thetadd, _] = self.out.each_ref().map(|x| self.of_state(k, x));
-        self.tree.acceleration_error(&self.tree_order(&qdd, &thetadd, true), self.tree.expected(k)[0])
+        self.coordinates.acceleration_error(&self.tree, k, &qdd, &thetadd)
     }
 
     /// Like [`Robot::forward`].
@@ -170,13 +110,8 @@ impl<T: Lane> Robot<T> {
     }
 
     pub fn inverse_error(&mut self, k: usize) -> f64 {
-        let [q, v, ..] = self.tree.state(k);
         let [tau_j, tau, _] = self.out.each_ref().map(|x| self.of_state(k, x));
-        let on_rotors: Vec<f64> = tau.iter().zip(&tau_j).map(|(motor, joint)| motor - joint).collect();
-        let needed = self.tree_order(&tau_j, &on_rotors, false);
-        let mut torques = needed.clone();
-        self.tree.add_springs(q, v, &needed, -1.0, &mut torques);
-        self.tree.torque_error(&torques, self.tree.expected(k)[1])
+        self.coordinates.torque_error(&self.tree, k, &tau_j, &tau)
     }
 }
 

@@ -1,13 +1,13 @@
 //! A robot of the comparison whose feet are held; `peers/stages/feet.py` writes the files.
 
-use crate::robot::{Point, Robot};
+use crate::robot::Robot;
 use gyroflex::dynamics::{
     AbaScratch, Anchor, Constrained, ConstrainedScratch, Constraint, ConstraintScratch, Directions, External, Forward,
     Frame, Hold, PropagatedScratch, Regularisation, State, SupportScratch, constrained_forward_dynamics,
     constraint_matrix_len, constraint_rows, propagated_len,
 };
 use gyroflex::spatial::{Force, Mat3, Transform, Vec3};
-use gyroflex_benches::peers::{Worker, numbers};
+use gyroflex_benches::peers::{Point, Worker, numbers};
 use std::cell::RefCell;
 use std::hint::black_box;
 use std::path::Path;
@@ -46,7 +46,7 @@ impl Standing {
         let mut want = Vec::new();
         // The same states with the feet at rest.
         for (k, row) in numbers(folder, name, "held").chunks_exact(2 * nv).enumerate() {
-            let (qd, thetad) = robot.velocities(&row[..nv]);
+            let (qd, thetad) = robot.coordinates.velocities(&robot.tree, &row[..nv]);
             (robot.points[k].qd, robot.points[k].thetad) = (qd, thetad);
             want.push(row[nv..].to_vec());
         }

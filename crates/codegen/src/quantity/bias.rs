@@ -1,4 +1,6 @@
-//! Forces of velocity and gravity.
+//! Forces of velocity and gravity: inverse dynamics without acceleration of a robot that has nothing but inertia.
+//!
+//! That takes half the operations of the core's `bias`, whose walk leaves at the base what its matrices need.
 
 use super::Options;
 use super::inverse::torques;
@@ -6,26 +8,16 @@ use super::tracing::{SymbolicState, traced, zeros};
 use crate::function::Function;
 use crate::robot::{Records, Robot};
 use crate::sym::Sym;
-use gyroflex::dynamics::{Acceleration, Bias, DerivativeScratch};
+use gyroflex::dynamics::Acceleration;
 use gyroflex::model::Body;
 
 /// `C q̇ + C₁ θ̇ + g` and `C₂ q̇`.
 pub(super) fn bias(robot: &Robot, options: &Options) -> Function {
     let meaning = "What links and motors need to go on without acceleration, besides friction, springs and dampers.";
     traced("bias_forces", meaning, |t| {
-        let nv = robot.nv();
         let state = t.moving(robot);
         let records = t.records(robot, options).regrouped();
-        let [link, motor] = if robot.flexible.is_some() {
-            of_bending(records, &state)
-        } else {
-            let (mut link, mut motor) = (zeros(nv), zeros(nv));
-            let mut scratch = vec![DerivativeScratch::new(); records.view().bodies().len()];
-            let out = Bias { link: &mut link, motor: &mut motor };
-            gyroflex::dynamics::bias(&records.view(), state.view(), &mut scratch, out)
-                .expect("lengths are the model's");
-            [link, motor]
-        };
+        let [link, motor] = forces(records, &state);
         t.vector("link", &link, "on the link side, with gravity [N m or N]");
         if robot.is_elastic() {
             t.vector("motor", &motor, "on the motors, reflected [N m or N]");
@@ -33,9 +25,9 @@ pub(super) fn bias(robot: &Robot, options: &Options) -> Function {
     })
 }
 
-/// Inverse dynamics without acceleration of a robot that has nothing but inertia; the motor of an elastic joint bears what
-/// its rotor needs beside the transmission's torque, that of a rigid gear is one with the link.
-fn of_bending(records: Records, state: &SymbolicState) -> [Vec<Sym>; 2] {
+/// Of links and motors. The motor of an elastic joint bears what its rotor needs beside the transmission's torque, that of a rigid
+/// gear is one with the link.
+pub(super) fn forces(records: Records, state: &SymbolicState) -> [Vec<Sym>; 2] {
     let rest = zeros(state.qd.len());
     let records = records.frictionless();
     let [mut link, tau] = torques(&records, state.view(), Acceleration { qdd: &rest, thetadd: &rest });

@@ -1,6 +1,7 @@
 //! Coriolis matrices.
 
 use super::Options;
+use super::bending;
 use super::tracing::{traced, zeros};
 use crate::function::Function;
 use crate::robot::Robot;
@@ -12,10 +13,16 @@ pub(super) fn coriolis(robot: &Robot, options: &Options) -> Function {
         let nv = robot.nv();
         let state = t.moving(robot);
         let records = t.records(robot, options).regrouped();
-        let (mut c, mut c1, mut c2) = (zeros(nv * nv), zeros(nv * nv), zeros(nv * nv));
-        let mut scratch = vec![DerivativeScratch::new(); records.view().bodies().len()];
-        let out = CoriolisMatrices { c: &mut c, c1: &mut c1, c2: &mut c2 };
-        coriolis_matrices(&records.view(), state.view(), &mut scratch, out).expect("lengths are the model's");
+        let [c, c1, c2] = match records.flexible() {
+            Some(model) => bending::coriolis(&model, &state),
+            None => {
+                let [mut c, mut c1, mut c2] = [(); 3].map(|()| zeros(nv * nv));
+                let mut scratch = vec![DerivativeScratch::new(); records.view().bodies().len()];
+                let out = CoriolisMatrices { c: &mut c, c1: &mut c1, c2: &mut c2 };
+                coriolis_matrices(&records.view(), state.view(), &mut scratch, out).expect("lengths are the model's");
+                [c, c1, c2]
+            }
+        };
         t.matrix("c", &c, nv, "links by links [kg m²/s]");
         if robot.is_elastic() {
             t.matrix("c1", &c1, nv, "links by motors [kg m²/s]");

@@ -1,6 +1,7 @@
 //! Derivatives of forward dynamics.
 
 use super::Options;
+use super::bending::forward_partials;
 use super::tracing::{SymbolicState, traced, zeros};
 use crate::function::Function;
 use crate::robot::{Records, Robot};
@@ -29,6 +30,9 @@ pub(super) fn forward_derivatives(robot: &Robot, options: &Options) -> Function 
 
 /// `∂q̈` and `∂θ̈`, `nv` rows of five blocks.
 pub(super) fn partials(records: &Records, state: &SymbolicState, tau: &[Sym]) -> [Vec<Sym>; 2] {
+    if let Some(model) = records.flexible() {
+        return forward_partials(&model, state, tau);
+    }
     let (model, nv) = (records.view(), tau.len());
     let (mut dqdd, mut dthetadd) = (zeros(5 * nv * nv), zeros(5 * nv * nv));
     let (mut qdd, mut thetadd, mut tau_j) = (zeros(nv), zeros(nv), zeros(nv));

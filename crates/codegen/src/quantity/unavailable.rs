@@ -17,10 +17,7 @@ pub struct Unavailable {
 
 /// Whether a robot has a quantity.
 pub(super) fn check(robot: &Robot, quantity: Quantity, options: &Options) -> Result<(), Unavailable> {
-    use Quantity::{
-        Coriolis, Coupling, ElasticInverse, ForwardDerivatives, InverseDerivatives, Jacobian, Linearization,
-        ReflectedInertia, Regressor, Stiffness,
-    };
+    use Quantity::{Coriolis, Coupling, ElasticInverse, Jacobian, ReflectedInertia, Regressor, Stiffness};
     let no = |reason: String, remedy: &str| Err(Unavailable { quantity, reason, remedy: remedy.to_owned() });
     let (elastic, bending) = (robot.is_elastic(), robot.flexible.is_some());
     match quantity {
@@ -50,9 +47,13 @@ pub(super) fn check(robot: &Robot, quantity: Quantity, options: &Options) -> Res
             ),
             None => Ok(()),
         },
-        Coriolis | Regressor | Jacobian | ForwardDerivatives | InverseDerivatives | Linearization if bending => no(
+        Coriolis if bending && robot.model.is_floating() => no(
+            "a link bends and the root floats, for which there is no Coriolis matrix here".to_owned(),
+            "generate `bias`, or fix the root",
+        ),
+        Regressor | Jacobian if bending => no(
             "a link bends, for which the core has no such algorithm".to_owned(),
-            "leave it out; `forward`, `inverse`, `mass-matrix`, `bias`, `gravity`, `energy` and `placements` are there",
+            "leave it out; `inverse`, its derivatives and `placements` are there",
         ),
         Jacobian => match &options.point {
             Some(point) if point.body >= robot.model.bodies().len() => no(

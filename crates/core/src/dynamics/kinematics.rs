@@ -5,7 +5,7 @@ use super::tree::{RootMotion, Tree, turns};
 use crate::Scalar;
 use crate::dispatch::{Kernel, Over};
 use crate::model::{Body, JointKind, Model, SizeError};
-use crate::spatial::{Motion, Transform, Turn, Vec3};
+use crate::spatial::{Mat3, Motion, Transform, Turn};
 
 /// A frame fixed to a body.
 #[derive(Clone, Copy, Debug)]
@@ -144,7 +144,10 @@ pub fn jacobian<T: Scalar>(
         return Err(SizeError { argument: "frame.body", expected: model.bodies.len(), given: frame.body });
     }
     out.fill(T::zero());
-    let target = frame.placement.after(poses[frame.body]);
+    let mut target = frame.placement.after(poses[frame.body]);
+    if axes == Axes::World {
+        target.rot = Mat3::identity();
+    }
     let mut at = Some(frame.body);
     while let Some(b) = at {
         let body = &model.bodies[b];
@@ -159,11 +162,7 @@ pub fn jacobian<T: Scalar>(
                 JointKind::Floating => c,
             };
             unit[entry] = T::one();
-            let local = to_target.motion(Motion::from(unit));
-            let column = match axes {
-                Axes::Local => local,
-                Axes::World => turned(local, |v| target.rot.transpose_mul(v)),
-            };
+            let column = to_target.motion(Motion::from(unit));
             for (row, value) in column.to_array().into_iter().enumerate() {
                 out[row * nv + body.v_index() + c] = value;
             }
@@ -171,8 +170,4 @@ pub fn jacobian<T: Scalar>(
         at = body.parent();
     }
     Ok(())
-}
-
-fn turned<T: Scalar>(m: Motion<T>, turn: impl Fn(Vec3<T>) -> Vec3<T>) -> Motion<T> {
-    Motion { ang: turn(m.ang), lin: turn(m.lin) }
 }

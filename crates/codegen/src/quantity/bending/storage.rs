@@ -9,26 +9,26 @@ use gyroflex::model::FlexibleModel;
 use gyroflex::spatial::Motion;
 
 /// What [`FlexibleScratch`] borrows.
-pub(crate) struct Storage {
-    bodies: Vec<FlexibleBody<Sym>>,
-    stations: Vec<FlexibleStation<Sym>>,
-    modes: Vec<FlexibleMode<Sym>>,
-    shapes: Vec<Motion<Sym>>,
-    matrix: Vec<Sym>,
+pub(crate) struct Storage<T> {
+    bodies: Vec<FlexibleBody<T>>,
+    stations: Vec<FlexibleStation<T>>,
+    modes: Vec<FlexibleMode<T>>,
+    shapes: Vec<Motion<T>>,
+    matrix: Vec<T>,
 }
 
-impl Storage {
+impl<T: Scalar> Storage<T> {
     pub(crate) fn of(model: &FlexibleModel<Sym>) -> Self {
         Self {
             bodies: vec![FlexibleBody::new(); model.rigid().bodies().len()],
             stations: vec![FlexibleStation::new(); model.stations().len()],
             modes: vec![FlexibleMode::new(); model.modes()],
             shapes: vec![Motion::zero(); flexible_shapes_len(model)],
-            matrix: vec![Sym::zero(); flexible_matrix_len(model)],
+            matrix: vec![T::zero(); flexible_matrix_len(model)],
         }
     }
 
-    pub(crate) fn lend(&mut self) -> FlexibleScratch<'_, Sym> {
+    pub(crate) fn lend(&mut self) -> FlexibleScratch<'_, T> {
         FlexibleScratch {
             bodies: &mut self.bodies,
             stations: &mut self.stations,
