@@ -6,4 +6,4 @@ mod storage;
 
 pub(super) use christoffel::coriolis;
 pub(super) use slopes::{forward_partials, inverse_partials};
-pub(super) use storage::Storage;
+pub(crate) use storage::Storage;
