@@ -19,6 +19,12 @@ pub fn equations(text: &str) -> Vec<(String, String)> {
     out
 }
 
+/// An entry of a matrix that stands as one.
+pub fn entry(matrix: &str, i: usize, j: usize) -> &str {
+    let inside = matrix.trim_start_matches("\\begin{bmatrix}").trim_end_matches("\\end{bmatrix}");
+    inside.split("\\\\").nth(i).and_then(|row| row.split('&').nth(j)).expect("it has the entry").trim()
+}
+
 /// The table of constants.
 pub fn constants(text: &str) -> HashMap<String, f64> {
     let Some((_, table)) = text.split_once("\\section*{Constants}") else { return HashMap::new() };
@@ -38,6 +44,7 @@ pub fn constants(text: &str) -> HashMap<String, f64> {
 
 /// Evaluates an expression; `value` knows the symbols, by their text without spaces.
 pub fn evaluate(text: &str, value: &dyn Fn(&str) -> f64) -> f64 {
+    let text = text.replace("{-}", "-").replace("{+}", "+");
     let tokens: Vec<char> = text.chars().filter(|c| !c.is_whitespace()).collect();
     let mut reader = Reader { tokens, at: 0, value };
     let result = reader.sum();
@@ -127,6 +134,12 @@ impl Reader<'_> {
             if name == "\\tfrac" {
                 let (a, b) = (self.braces(), self.braces());
                 return a.parse::<f64>().expect("a number") / b.parse::<f64>().expect("a number");
+            }
+            if name == "\\cos" || name == "\\sin" {
+                assert_eq!(self.take(), '(');
+                let angle = self.sum();
+                assert_eq!(self.take(), ')');
+                return if name == "\\cos" { angle.cos() } else { angle.sin() };
             }
             if self.peek() == Some('_') {
                 self.take();
