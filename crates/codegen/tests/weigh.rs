@@ -104,7 +104,7 @@ fn reported_torque_error_is_that_of_the_functions() {
 
 #[test]
 fn reported_acceleration_errors_are_those_of_the_functions() {
-    for seed in seeds(24) {
+    for seed in seeds(40) {
         let arm = Arm::new(seed, &Random { prismatic: 0.0, ..options(2..=4) });
         let whole = explicit(&arm);
         let (state, n) = (arm.state(4), whole.nv());
@@ -116,7 +116,8 @@ fn reported_acceleration_errors_are_those_of_the_functions() {
         };
         let [qdd, thetadd] = value(&whole);
         let at = Motion { qdd, thetadd, ..motion(&state) };
-        let simplified = simplify(&whole, std::slice::from_ref(&at), 0.03);
+        let tolerance = [0.03, 0.3][seed as usize / 4 % 2];
+        let simplified = simplify(&whole, std::slice::from_ref(&at), tolerance);
         let [qdd, thetadd] = value(&simplified.model);
         for i in 0..n {
             let elastic = whole.transmission(i).is_some();
