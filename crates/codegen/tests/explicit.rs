@@ -7,6 +7,7 @@ use gyroflex::model::Fidelity;
 use gyroflex_codegen::explicit::{ExplicitModel, NotExplicit, Options};
 use gyroflex_codegen::function::Function;
 use gyroflex_codegen::quantity::{Options as Choices, Quantity, function};
+use gyroflex_codegen::robot::Parameter;
 use gyroflex_testkit::random::Options as Random;
 use gyroflex_testkit::tolerance::assert_close_above;
 
@@ -213,4 +214,42 @@ fn truncation_leaves_out_higher_degrees_only() {
             }
         }
     }
+}
+
+#[test]
+fn kept_parameters_stay_symbols() {
+    for seed in seeds(30) {
+        let arm = Arm::new(seed, &Random { friction: 0.0, cubic: 0.0, ..options(2..=4) });
+        let robot = arm.robot();
+        // Every other one, of its own value and of others.
+        let kept: Vec<Parameter> = Parameter::all(&robot).into_iter().step_by(2).collect();
+        let explicit = ExplicitModel::of(&robot, &Options { kept: kept.clone(), ..Options::default() })
+            .expect("nothing in it is not explicit");
+        let choices = Choices { kept: kept.clone(), ..Choices::default() };
+        for quantity in [Quantity::MassMatrix, Quantity::Coupling, Quantity::Gravity, Quantity::Inverse, Quantity::Bias]
+        {
+            let Ok(library) = function(&robot, quantity, &choices) else { continue };
+            let ours = explicit.function(quantity).expect("explicit equations say it");
+            let state = arm.state(seed);
+            for scale in [1.0, 1.2] {
+                let value = |f: &Function, name: &str| {
+                    let place = f.outputs.iter().position(|o| o.name == name).expect("it is a result");
+                    let state = numbers_of_state(f, &state);
+                    let parameters = kept.iter().map(|p| scale * p.nominal());
+                    f.evaluate(&state.into_iter().chain(parameters).collect::<Vec<f64>>()).swap_remove(place)
+                };
+                let name = if quantity == Quantity::Inverse { "tau" } else { &ours.outputs[0].name };
+                let context = format!("{} of seed {seed}, parameters times {scale}", quantity.name());
+                let (got, want) = (value(&ours, name), value(&library, name));
+                assert_close_above("a result", &context, &got, &want, 1e-11, 1e-3);
+            }
+        }
+    }
+}
+
+/// The numbers of a state, for a function whose last argument are parameters.
+fn numbers_of_state(f: &Function, state: &gyroflex_testkit::State) -> Vec<f64> {
+    let mut without = f.clone();
+    assert_eq!(without.arguments.pop().expect("it has arguments").name, "parameters");
+    numbers(&without, state)
 }

@@ -1,19 +1,17 @@
 //! The quantities of an explicit model as functions, for every language that there is.
 
-use super::compose::Composer;
+use super::parts::{couplings, mass, motor_friction, resist, weights};
 use super::signature::{Signature, signed};
-use super::traced::friction_of;
 use super::velocity::Slopes;
 use super::{ExplicitModel, solve};
 use crate::function::Function;
 use crate::quantity::{Quantity, Unavailable};
 use crate::sym::Sym;
 use gyroflex::Scalar;
-use gyroflex::model::Friction;
 
 impl ExplicitModel {
     /// The function that computes a quantity by the explicit equations. Arguments are those of [`crate::quantity::function`]; torques of
-    /// rigid gears are those of their motors.
+    /// rigid gears are those of their motors, and forward dynamics gives accelerations alone.
     ///
     /// # Errors
     /// For a quantity that explicit equations do not say.
@@ -212,42 +210,4 @@ fn energy(s: &mut Signature) {
     s.vector("kinetic", vec![half * twice], "of links and rotors [J]");
     s.vector("gravity", vec![potential], "in the field of gravity, but for a constant [J]");
     s.vector("elastic", vec![elastic], "in the springs of transmissions and links, zero where unloaded [J]");
-}
-
-fn mass(model: &ExplicitModel, composer: &mut Composer) -> Vec<Sym> {
-    let n = model.nv();
-    let upper: Vec<Sym> = model.mass.iter().map(|sum| composer.compose(sum)).collect();
-    (0..n * n).map(|at| upper[model.upper(at / n, at % n)]).collect()
-}
-
-fn couplings(model: &ExplicitModel, composer: &mut Composer) -> Vec<Sym> {
-    model.coupling.iter().map(|sum| composer.compose(sum)).collect()
-}
-
-fn weights(model: &ExplicitModel, composer: &mut Composer) -> Vec<Sym> {
-    (0..model.nv()).map(|i| composer.compose(&model.gravity(i))).collect()
-}
-
-/// Adds what friction on the link side and the modes' springs and dampers take.
-fn resist(model: &ExplicitModel, composer: &mut Composer, (q, qd): (&[Sym], &[Sym]), link: &mut [Sym]) {
-    for (i, joint) in model.joints.iter().enumerate() {
-        link[i] += friction(composer, &joint.friction).torque(qd[i]);
-    }
-    let (first, modes) = (model.joints.len(), model.modes());
-    for j in 0..modes {
-        for k in 0..modes {
-            link[first + j] += Sym::from_f64(model.modal_stiffness(j, k)) * q[first + k];
-            link[first + j] += Sym::from_f64(model.modal_damping(j, k)) * qd[first + k];
-        }
-    }
-}
-
-/// `N f_m(N v)`.
-fn motor_friction(composer: &mut Composer, drive: &super::DriveLaw, speed: Sym) -> Sym {
-    let n = composer.compose(&drive.gear_ratio);
-    n * friction(composer, &drive.friction).torque(n * speed)
-}
-
-fn friction(composer: &mut Composer, of: &Friction<super::Sum>) -> Friction<Sym> {
-    friction_of(of, |sum| composer.compose(sum))
 }

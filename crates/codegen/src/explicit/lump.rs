@@ -8,17 +8,37 @@ use super::{Coordinate, ExplicitModel, Input, Layout, Monomial, Sum};
 pub(crate) struct Lump {
     /// Its value, positive, in SI units.
     pub(crate) value: f64,
-    /// Its unit, unless kept parameters stand beside it.
-    pub(crate) unit: Option<Unit>,
+    /// Its unit.
+    pub(crate) unit: Unit,
 }
 
 /// Powers of kilogram, metre and second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Unit {
-    /// Of metres, beside a kilogram.
-    pub(crate) metres: i32,
-    /// Whether there are s⁻².
-    pub(crate) per_second_squared: bool,
+pub(crate) struct Unit(pub(crate) [i32; 3]);
+
+impl Unit {
+    fn times(self, other: Self, power: i32) -> Self {
+        Self(core::array::from_fn(|k| self.0[k] + power * other.0[k]))
+    }
+
+    fn is_number(self) -> bool {
+        self.0 == [0; 3]
+    }
+
+    /// Of a kept parameter, radians left out.
+    fn of_parameter(unit: &str) -> Self {
+        Self(match unit {
+            "m/s²" => [0, 1, -2],
+            "kg" => [1, 0, 0],
+            "kg m²" => [1, 2, 0],
+            "N m/rad" => [1, 2, -2],
+            "N/m" => [1, 0, -2],
+            "N m s/rad" => [1, 2, -1],
+            "N s/m" => [1, 0, -1],
+            "rad/m" => [0, -1, 0],
+            _ => [0; 3],
+        })
+    }
 }
 
 /// Numerators and denominators of the multiples that share a constant.
@@ -33,7 +53,7 @@ impl ExplicitModel {
         let n = self.nv();
         let mut found: Vec<Lump> = Vec::new();
         let size = |i: usize| i32::from(matches!(self.coordinates[i], Coordinate::Angle(_)));
-        let unit_of = |i: usize, j: usize| Unit { metres: size(i) + size(j), per_second_squared: false };
+        let unit_of = |i: usize, j: usize| Unit([1, size(i) + size(j), 0]);
         // From the tip to the base: entries there are the shorter ones, and have the constants that others have multiples of.
         for i in (0..n).rev() {
             for j in (i..n).rev() {
@@ -43,7 +63,7 @@ impl ExplicitModel {
                 self.find(self.coupling(i, j), unit_of(i, j), &mut found);
             }
         }
-        let energy = Unit { metres: 2, per_second_squared: true };
+        let energy = Unit([1, 2, -2]);
         self.find(&self.potential, energy, &mut found);
 
         // Numbered in the order of reading.
@@ -86,33 +106,31 @@ impl ExplicitModel {
     /// Adds the constants of a sum to those that are known.
     fn find(&self, sum: &Sum, unit: Unit, found: &mut Vec<Lump>) {
         for (m, c) in sum.terms() {
-            let (unit, plain) = self.unit_in(m, unit);
-            if (unit.is_none() && rational(*c).is_some()) || self.known(m, *c, plain, found).is_some() {
-                continue;
+            let own = self.unit_in(m, unit);
+            let number = own.is_number() && rational(*c).is_some();
+            if !number && self.known(m, *c, unit, found).is_none() {
+                found.push(Lump { value: c.abs(), unit: own });
             }
-            found.push(Lump { value: c.abs(), unit });
         }
     }
 
-    /// The unit of a term's coefficient, and what it would be without kept parameters.
-    fn unit_in(&self, m: &Monomial, unit: Unit) -> (Option<Unit>, Unit) {
+    /// The unit of a term's coefficient.
+    fn unit_in(&self, m: &Monomial, unit: Unit) -> Unit {
         let n = self.nv();
-        let powers = m.powers(&self.layout).iter().zip(&self.layout.variables).filter(|(power, _)| **power != 0);
-        let (mut kept, mut reduced) = (false, unit);
-        for (power, input) in powers {
-            if *input < n {
-                reduced.metres -= i32::from(*power);
-            } else {
-                kept = true;
-            }
-        }
-        ((!kept).then_some(reduced), unit)
+        let powers = m.powers(&self.layout).iter().zip(&self.layout.variables);
+        powers.fold(unit, |unit, (power, input)| {
+            let of = match input.checked_sub(n) {
+                None => Unit([0, 1, 0]),
+                Some(k) => Unit::of_parameter(self.options.kept[k].unit()),
+            };
+            unit.times(of, -i32::from(*power))
+        })
     }
 
-    /// The constant of which a coefficient is a small multiple, and the multiple.
+    /// The constant of which a coefficient is a small multiple, and the multiple; none of a small number.
     fn known(&self, m: &Monomial, c: f64, unit: Unit, found: &[Lump]) -> Option<(usize, f64)> {
-        let (unit, _) = self.unit_in(m, unit);
-        if unit.is_none() && rational(c).is_some() {
+        let unit = self.unit_in(m, unit);
+        if unit.is_number() && rational(c).is_some() {
             return None;
         }
         found.iter().enumerate().filter(|(_, lump)| lump.unit == unit).find_map(|(k, lump)| {

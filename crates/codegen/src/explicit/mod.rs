@@ -5,6 +5,7 @@
 //! `sin² + cos² = 1` needs no saying, and equal expressions are equal sums. Terms can be counted, weighed,
 //! dropped and printed: what Cetinkunt and Book 1988 want explicit equations for.
 
+mod build;
 mod compose;
 mod error;
 mod expand;
@@ -13,6 +14,7 @@ mod layout;
 mod lump;
 mod model;
 mod monomial;
+mod parts;
 mod signature;
 mod solve;
 mod sum;

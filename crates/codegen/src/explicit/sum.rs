@@ -69,7 +69,11 @@ impl Sum {
 
     /// Drops coefficients below a part of the largest.
     pub(super) fn prune(&mut self, part: f64) {
-        let least = part * self.largest();
+        self.prune_below(part * self.largest());
+    }
+
+    /// Drops coefficients of no more than this magnitude.
+    pub(super) fn prune_below(&mut self, least: f64) {
         self.terms.retain(|(_, c)| c.abs() > least);
     }
 

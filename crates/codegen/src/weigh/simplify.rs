@@ -32,12 +32,24 @@ pub struct Report {
     pub forward_operations: usize,
     /// Operations of inverse dynamics.
     pub inverse_operations: usize,
-    /// Largest error of a torque, as part of the largest torque of its equation.
-    pub torque_error: f64,
-    /// Largest error of an acceleration under the same torques, as part of the largest acceleration of its coordinate or motor.
-    pub acceleration_error: f64,
+    /// Largest errors of the torques of all equations, of coordinates, then of motors, as parts of the largest torques there.
+    pub torque_errors: Vec<f64>,
+    /// Largest errors of the accelerations under the same torques, in the same order, as parts of the largest accelerations.
+    pub acceleration_errors: Vec<f64>,
     /// Whether nothing is left of the coupling of links and motors: the reduced model appeared by itself.
     pub uncoupled: bool,
+}
+
+impl Report {
+    /// The largest error of a torque, as part of the largest torque of its equation.
+    pub fn torque_error(&self) -> f64 {
+        self.torque_errors.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The largest error of an acceleration, as part of the largest acceleration of its coordinate or motor.
+    pub fn acceleration_error(&self) -> f64 {
+        self.acceleration_errors.iter().copied().fold(0.0, f64::max)
+    }
 }
 
 /// Drops all terms whose contribution along a motion is below a tolerance.
@@ -64,7 +76,7 @@ pub fn simplify(model: &ExplicitModel, samples: &[Motion], tolerance: f64) -> Si
         });
         simpler = reduced(model, &kept);
     }
-    let (torque_error, acceleration_error) = errors(model, &simpler, samples, &dropped);
+    let [torque_errors, acceleration_errors] = errors(model, &simpler, samples, &dropped);
     let operations = |quantity| simpler.function(quantity).map_or(0, |f| f.operations().total());
     let report = Report {
         tolerance,
@@ -73,8 +85,8 @@ pub fn simplify(model: &ExplicitModel, samples: &[Motion], tolerance: f64) -> Si
         restored,
         forward_operations: operations(Quantity::Forward),
         inverse_operations: operations(Quantity::Inverse),
-        torque_error,
-        acceleration_error,
+        torque_errors,
+        acceleration_errors,
         uncoupled: model.is_coupled() && !simpler.is_coupled(),
     };
     Simplified { model: simpler, report }
@@ -115,29 +127,26 @@ fn reduced(model: &ExplicitModel, kept: &[Weight]) -> ExplicitModel {
 }
 
 /// Largest relative errors of torques and of accelerations, by what was dropped.
-fn errors(model: &ExplicitModel, simpler: &ExplicitModel, samples: &[Motion], dropped: &[Weight]) -> (f64, f64) {
+fn errors(model: &ExplicitModel, simpler: &ExplicitModel, samples: &[Motion], dropped: &[Weight]) -> [Vec<f64>; 2] {
     let n = model.nv();
     let terms: Vec<Term> = dropped.iter().map(|weight| Term::of(model, weight.place, weight.number)).collect();
-    let of_torques = scales(model, samples);
-    let mut of_accelerations = vec![0.0_f64; 2 * n];
-    for at in samples {
-        for i in 0..n {
-            of_accelerations[i] = of_accelerations[i].max(at.qdd[i].abs());
-            of_accelerations[n + i] = of_accelerations[n + i].max(at.thetadd[i].abs());
-        }
-    }
-    let (mut torque, mut acceleration) = (0.0_f64, 0.0_f64);
+    let (mut asked, mut torques, mut accelerations) = (vec![0.0; 2 * n], vec![0.0; 2 * n], vec![0.0; 2 * n]);
     for at in samples {
         let (mut missing, inputs) = (vec![0.0; 2 * n], at.inputs(model));
         terms.iter().for_each(|term| term.add_to(model, at, &inputs, &mut missing));
-        for (x, scale) in missing.iter().zip(&of_torques) {
-            torque = torque.max(relative(x.abs(), *scale));
-        }
-        // The same torques accelerate what is left by more: what was dropped takes nothing of them.
-        let Some(factor) = Factor::of(simpler, at) else { return (torque, f64::INFINITY) };
-        for (x, scale) in factor.solved(&missing).iter().zip(&of_accelerations) {
-            acceleration = acceleration.max(relative(x.abs(), *scale));
+        largest(&mut torques, &missing);
+        largest(&mut asked, &[&at.qdd[..], &at.thetadd].concat());
+        // Torques that what was dropped does not take accelerate what is left.
+        match Factor::of(simpler, at) {
+            Some(factor) => largest(&mut accelerations, &factor.solved(&missing)),
+            None => accelerations.fill(f64::INFINITY),
         }
     }
-    (torque, acceleration)
+    let parts = |of: &[f64], whole: &[f64]| of.iter().zip(whole).map(|(x, scale)| relative(*x, *scale)).collect();
+    [parts(&torques, &scales(model, samples)), parts(&accelerations, &asked)]
+}
+
+/// Keeps the larger magnitudes.
+fn largest(of: &mut [f64], new: &[f64]) {
+    of.iter_mut().zip(new).for_each(|(of, new)| *of = of.max(new.abs()));
 }

@@ -1,6 +1,7 @@
 //! Robots for the laws of explicit equations, and numbers for the arguments of their functions.
 #![allow(dead_code, reason = "every test takes of it what it needs")]
 
+pub mod document;
 pub mod shipped;
 
 use gyroflex::model::{DriveSpec, Fidelity, TransmissionSpec};

@@ -1,5 +1,6 @@
 //! The table of values.
 
+use super::lines::{LINE, width};
 use super::symbols;
 use super::terms::number;
 use crate::explicit::{ExplicitModel, Lump, Sum, Unit};
@@ -30,14 +31,10 @@ pub(super) fn constants(model: &ExplicitModel, lumps: &[Lump]) -> Vec<Constant> 
     let mut out: Vec<Constant> = lumps
         .iter()
         .enumerate()
-        .map(|(k, lump)| Constant {
-            name: format!("p_{{{}}}", k + 1),
-            value: lump.value,
-            unit: lump.unit.map_or_else(String::new, unit),
-        })
+        .map(|(k, lump)| Constant { name: format!("p_{{{}}}", k + 1), value: lump.value, unit: unit(lump.unit) })
         .collect();
     let mut add = |name: String, sum: &Sum, unit: &str| {
-        if let Some(value) = plain(model, sum).filter(|value| *value != 0.0) {
+        if let Some(value) = plain(sum).filter(|value| *value != 0.0) {
             out.push(Constant { name, value, unit: unit.to_owned() });
         }
     };
@@ -51,7 +48,7 @@ pub(super) fn constants(model: &ExplicitModel, lumps: &[Lump]) -> Vec<Constant> 
                 add(format!("K_{{3,{k}}}"), &t.cubic, units.cubic);
                 add(format!("D_{{{k}}}"), &t.damping, units.damping);
             }
-            if has_friction(model, &drive.friction) {
+            if has_friction(&drive.friction) {
                 add(format!("N_{{{k}}}"), &drive.gear_ratio, units.ratio);
                 of_friction(&format!("{k}\\mathrm{{m}}"), &drive.friction, &ANGLE, &mut add);
             }
@@ -86,7 +83,7 @@ fn of_friction(index: &str, friction: &Friction<Sum>, units: &Units, add: &mut i
 }
 
 /// Whether there is any.
-pub(super) fn has_friction(_: &ExplicitModel, friction: &Friction<Sum>) -> bool {
+pub(super) fn has_friction(friction: &Friction<Sum>) -> bool {
     friction.dry || !friction.viscous.is_zero()
 }
 
@@ -101,49 +98,56 @@ pub(super) fn modal_index(model: &ExplicitModel, j: usize, k: usize) -> String {
 }
 
 /// The number that a sum is; none if it depends on something.
-pub(super) fn plain(model: &ExplicitModel, sum: &Sum) -> Option<f64> {
+pub(super) fn plain(sum: &Sum) -> Option<f64> {
     match sum.terms() {
         [] => Some(0.0),
         [(m, c)] if m.is_one() => Some(*c),
-        _ => {
-            let _ = model;
-            None
-        }
+        _ => None,
     }
 }
 
+/// Powers of units, with newtons where they fit; those below the line behind a stroke.
 fn unit(of: Unit) -> String {
-    let Unit { metres, per_second_squared } = of;
-    let power = |m: i32| match m {
-        1 => "m".to_owned(),
-        m => format!("m^{{{m}}}"),
+    let [kilograms, metres, seconds] = of.0;
+    let powers = if (kilograms, seconds) == (1, -2) {
+        [("N", 1), ("m", metres - 1), ("s", 0)]
+    } else {
+        [("kg", kilograms), ("m", metres), ("s", seconds)]
     };
-    if per_second_squared {
-        // kg m² s⁻² m⁻ᵏ = N m¹⁻ᵏ
-        return match metres - 1 {
-            0 => "N".to_owned(),
-            m if m > 0 => format!("N\\,{}", power(m)),
-            m => format!("N/{}", power(-m)),
-        };
-    }
-    match metres {
-        0 => "kg".to_owned(),
-        m if m > 0 => format!("kg\\,{}", power(m)),
-        m => format!("kg/{}", power(-m)),
+    let side = |sign: i32| -> Vec<String> {
+        let some = powers.iter().filter(|(_, power)| power * sign > 0);
+        some.map(
+            |(name, power)| if power.abs() == 1 { (*name).to_owned() } else { format!("{name}^{{{}}}", power.abs()) },
+        )
+        .collect()
+    };
+    let (above, below) = (side(1).join("\\,"), side(-1).join("\\,"));
+    match (above.is_empty(), below.is_empty()) {
+        (_, true) => above,
+        (true, false) => format!("1/{below}"),
+        (false, false) => format!("{above}/{below}"),
     }
 }
 
-/// The table, in as many columns as fit.
+/// The section of the table, in as many columns as fit.
 pub(super) fn table(constants: &[Constant]) -> String {
     if constants.is_empty() {
         return String::new();
     }
-    let rows: Vec<String> = constants
+    let texts: Vec<String> = constants
         .iter()
         .map(|c| {
             let unit = if c.unit.is_empty() { String::new() } else { format!("\\ \\mathrm{{{}}}", c.unit) };
-            format!("$\\mathstrut {} = {}{unit}$", c.name, number(c.value))
+            format!("{} = {}{unit}", c.name, number(c.value))
         })
         .collect();
-    format!("\\begin{{multicols}}{{5}}\\footnotesize\\raggedright\n{}\n\\end{{multicols}}\n", rows.join("\\\\\n"))
+    // Many of them are many short lines; sizes are seven and eight points beside nine.
+    let (size, points) = if texts.len() > 30 { ("scriptsize", 7) } else { ("footnotesize", 8) };
+    let widest = texts.iter().map(|text| width(text)).max().unwrap_or(1) + 20;
+    let columns = (LINE * 9 / points / widest).clamp(2, 6);
+    let rows: Vec<String> = texts.iter().map(|text| format!("\\mbox{{${text}$}}")).collect();
+    format!(
+        "\\begin{{multicols}}{{{columns}}}[\\section*{{Constants}}]\\{size}\\raggedright\n{}\n\\end{{multicols}}\n",
+        rows.join("\\\\\n")
+    )
 }

@@ -1,22 +1,33 @@
 //! Long equations broken into lines.
 
-/// Signs of a line, as `width` counts them.
-const LINE: usize = 118;
+/// Width of a line, in tenths of a letter.
+pub(super) const LINE: usize = 960;
 
-/// `left &= right`, broken before signs where a line is full.
+/// `left &= right`, broken before signs where a line is full: outside brackets, if the line is long enough there.
 pub(super) fn equation(left: &str, right: &str) -> String {
-    let mut out = format!("{left} &= ");
-    let mut used = width(left) + 3;
+    let begin = width(left) + 30;
+    let mut lines: Vec<Vec<&str>> = vec![Vec::new()];
+    let (mut used, mut depth) = (begin, 0_i32);
+    // Where the line may be broken outside brackets, and how wide it is until there.
+    let mut outside = None;
     for part in parts(right) {
         let more = width(part);
-        if used + more > LINE && used > width(left) + 3 {
-            out.push_str("\\\\\n &\\quad ");
-            used = 6;
+        let line = lines.last_mut().expect("there is a line");
+        if depth == 0 && used > LINE / 2 {
+            outside = Some((line.len(), used));
         }
-        out.push_str(part);
+        if used + more > LINE && !line.is_empty() {
+            let (at, until) = outside.take().unwrap_or((line.len(), used));
+            let rest = line.split_off(at);
+            lines.push(rest);
+            used = 60 + used - until;
+        }
+        lines.last_mut().expect("there is a line").push(part);
         used += more;
+        depth += part.chars().map(|c| i32::from(c == '(') - i32::from(c == ')')).sum::<i32>();
     }
-    out
+    let lines: Vec<String> = lines.iter().map(|line| line.concat()).collect();
+    format!("{left} &= {}", lines.join("\\\\\n &\\quad "))
 }
 
 /// Several equations one below the other.
@@ -28,32 +39,27 @@ pub(super) fn aligned(equations: &[String]) -> String {
     }
 }
 
-/// Short equations side by side.
-pub(super) fn gathered(equations: &[(String, String)]) -> String {
+/// The rows of equations, short ones side by side.
+pub(super) fn gathered(equations: &[(String, String)]) -> Vec<String> {
     let (mut rows, mut row, mut used) = (Vec::new(), Vec::new(), 0);
-    let mut long = Vec::new();
     for (left, right) in equations {
-        let own = width(left) + width(right) + 8;
-        if own > LINE / 2 {
-            if !row.is_empty() {
-                long.push(format!("&{}", core::mem::take(&mut row).join(",\\quad ")));
-                used = 0;
-            }
-            long.push(equation(left, right));
-            continue;
-        }
-        if used + own > LINE && !row.is_empty() {
-            long.push(format!("&{}", core::mem::take(&mut row).join(",\\quad ")));
+        let own = width(left) + width(right) + 70;
+        let alone = own > LINE / 2;
+        if (alone || used + own > LINE) && !row.is_empty() {
+            rows.push(core::mem::take(&mut row).join(",\\quad "));
             used = 0;
         }
-        row.push(format!("{left} = {right}"));
-        used += own;
+        if alone {
+            rows.push(equation(left, right));
+        } else {
+            row.push(format!("{left} {}= {right}", if row.is_empty() { "&" } else { "" }));
+            used += own;
+        }
     }
     if !row.is_empty() {
-        long.push(format!("&{}", row.join(",\\quad ")));
+        rows.push(row.join(",\\quad "));
     }
-    rows.append(&mut long);
-    aligned(&rows)
+    rows
 }
 
 /// The pieces between which a line may end, each with its sign.
@@ -70,9 +76,9 @@ fn parts(text: &str) -> Vec<&str> {
     out
 }
 
-/// About how many letters wide it is: a command is one, an index half of one.
+/// About how wide it is, in tenths of a letter.
 pub(super) fn width(text: &str) -> usize {
-    let (mut twice, mut small, mut depth) = (0, None, 0_usize);
+    let (mut width, mut small, mut depth) = (0, None, 0_usize);
     let mut chars = text.chars().peekable();
     while let Some(c) = chars.next() {
         match c {
@@ -88,7 +94,7 @@ pub(super) fn width(text: &str) -> usize {
                     small = small.or(Some(depth));
                 } else {
                     chars.next();
-                    twice += 1;
+                    width += 7;
                 }
             }
             '\\' => {
@@ -96,15 +102,22 @@ pub(super) fn width(text: &str) -> usize {
                 while chars.peek().is_some_and(char::is_ascii_alphabetic) {
                     name.extend(chars.next());
                 }
-                twice += match name.as_str() {
+                width += match name.as_str() {
                     "dot" | "ddot" | "mathrm" | "mathit" | "" => 0,
-                    "cos" | "sin" => 6,
-                    _ => 2,
+                    "cos" | "sin" => 27,
+                    "tfrac" => {
+                        // Half of its digits, small.
+                        small = small.or(Some(depth));
+                        0
+                    }
+                    _ => 10,
                 };
             }
-            ' ' => twice += 1,
-            _ => twice += if small.is_some() { 1 } else { 2 },
+            ' ' => width += 4,
+            '+' | '-' | '=' => width += 14,
+            '(' | ')' => width += 7,
+            _ => width += if small.is_some() { 7 } else { 9 },
         }
     }
-    twice / 2
+    width
 }

@@ -3,9 +3,12 @@
 //! Inertia, Coriolis and centrifugal forces, gravity, stiffness and damping, rotors, one section each. Coefficients are lumped constants
 //! `p₁, p₂, …` with a table of their values at the end; parameters that are kept stand by their names.
 
+mod abbreviations;
 mod constants;
+mod equations;
 mod lines;
 mod sections;
+mod springs;
 mod symbols;
 mod terms;
 mod velocities;
@@ -14,28 +17,34 @@ use super::{File, Head};
 use crate::explicit::ExplicitModel;
 use sections::Writer;
 
-const PREAMBLE: &str = r"\documentclass[10pt,a4paper]{article}
-\usepackage[margin=16mm]{geometry}
+const PREAMBLE: &str = r"\documentclass[10pt,a4paper,fleqn]{article}
+\usepackage[hmargin=16mm,vmargin=12mm]{geometry}
 \usepackage{amsmath,multicol}
 \allowdisplaybreaks
 \setlength{\parindent}{0pt}
-\setlength{\parskip}{3pt}
-\setlength{\columnseprule}{0pt}
+\setlength{\parskip}{2pt}
+\setlength{\columnsep}{6pt}
+\setlength{\mathindent}{1em}
+\setlength{\multicolsep}{3pt}
+\sloppy
 \pagestyle{empty}
 \makeatletter
-\renewcommand{\section}{\@startsection{section}{1}{0pt}{7pt plus 2pt}{2pt}{\normalfont\normalsize\bfseries}}
+\renewcommand{\section}{\@startsection{section}{1}{0pt}{5pt plus 2pt}{1pt}{\normalfont\normalsize\bfseries}}
 \makeatother
-\AtBeginDocument{\abovedisplayskip=3pt plus 2pt \belowdisplayskip=3pt plus 2pt \abovedisplayshortskip=2pt \belowdisplayshortskip=3pt \jot=2pt}
+";
+
+/// After the size of the text, which sets its own.
+const SPACING: &str = r"\abovedisplayskip=3pt plus 2pt \belowdisplayskip=3pt plus 2pt \abovedisplayshortskip=2pt \belowdisplayshortskip=3pt \jot=1pt
 ";
 
 /// The document, `<robot>.tex`. It needs `amsmath`, `geometry` and `multicol`, which every distribution has.
 pub fn document(model: &ExplicitModel, head: &Head) -> File {
     let (lumped, lumps) = model.lumped();
-    let mut writer = Writer::new(model, &lumped);
+    let writer = Writer::new(model, &lumped);
     let body = writer.body(&lumps);
     let name = symbols::escaped(&head.robot);
     let text = format!(
-        "% {}, {}. {}\n{PREAMBLE}\\begin{{document}}\\small\n{{\\Large Equations of motion of {name}}}\\par\n{}{body}\\end{{document}}\n",
+        "% {}, {}. {}\n{PREAMBLE}\\begin{{document}}\\small\\raggedright\n{SPACING}{{\\Large Equations of motion of {name}}}\\par\n{}{body}\\end{{document}}\n",
         head.robot,
         head.model,
         head.command,

@@ -43,12 +43,13 @@ pub(super) fn index(of: &[usize]) -> String {
     of.iter().map(ToString::to_string).collect::<Vec<_>>().join(separator)
 }
 
-/// `c_{12}` for `cos(q₁ + q₂)`; other multiples are written out.
+/// `c_{12}` for `cos(q₁ + q₂)`, `c_{223}` for `cos(2 q₂ + q₃)`: indices add up, as in Armstrong, Khatib and Burdick 1986. Differences are
+/// written out.
 pub(super) fn harmonic(layout: &Layout, h: &Harmonic) -> String {
     let angles = &layout.angles[layout.groups[h.group].clone()];
-    let plain = h.multiples.iter().all(|k| (0..=1).contains(k));
-    if plain {
-        let of: Vec<usize> = angles.iter().zip(h.multiples).filter(|(_, k)| **k == 1).map(|(q, _)| q + 1).collect();
+    if h.multiples.iter().all(|k| (0..=3).contains(k)) {
+        let repeated = |(q, k): (&usize, &i8)| core::iter::repeat_n(q + 1, usize::from(k.unsigned_abs()));
+        let of: Vec<usize> = angles.iter().zip(h.multiples).flat_map(repeated).collect();
         return format!("{}_{{{}}}", if h.sine { "s" } else { "c" }, index(&of));
     }
     let mut angle = String::new();
@@ -63,9 +64,7 @@ pub(super) fn harmonic(layout: &Layout, h: &Harmonic) -> String {
         let times = if k.abs() == 1 { String::new() } else { k.abs().to_string() };
         angle += &format!("{sign}{times}q_{{{}}}", q + 1);
     }
-    let function = if h.sine { "\\sin" } else { "\\cos" };
-    let single = h.multiples.iter().filter(|k| **k != 0).count() == 1;
-    if single { format!("{function} {angle}\\,") } else { format!("{function}({angle})") }
+    format!("{}({angle})", if h.sine { "\\sin" } else { "\\cos" })
 }
 
 /// A variable of a term: a position, a kept parameter or a lumped constant.

@@ -3,11 +3,30 @@
 use super::symbols;
 use crate::explicit::{ExplicitModel, Monomial, Sum, rational};
 
-/// A term, its sign apart.
+/// A term: its sign, a positive coefficient, and what it multiplies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Piece {
     pub(super) negative: bool,
+    pub(super) coefficient: f64,
     pub(super) text: String,
+}
+
+impl Piece {
+    /// A coefficient and what it multiplies.
+    pub(super) fn of(c: f64, text: String) -> Self {
+        Self { negative: c < 0.0, coefficient: c.abs(), text }
+    }
+
+    /// Without its sign.
+    fn magnitude(&self) -> String {
+        let coefficient = match rational(self.coefficient) {
+            Some((1, 1)) if !self.text.is_empty() => String::new(),
+            Some((numerator, 1)) => numerator.to_string(),
+            Some((numerator, denominator)) => format!("\\tfrac{{{numerator}}}{{{denominator}}}"),
+            None => number(self.coefficient),
+        };
+        coefficient + &self.text
+    }
 }
 
 /// `a + b − c`.
@@ -20,36 +39,29 @@ pub(super) fn joined(pieces: &[Piece]) -> String {
             (false, false) => " + ",
             (false, true) => " - ",
         };
-        out += &piece.text;
+        out += &piece.magnitude();
     }
     if out.is_empty() { "0".to_owned() } else { out }
 }
 
-/// A factor before brackets around several terms, or before one.
-pub(super) fn bracketed(factor: &str, mut pieces: Vec<Piece>, behind: bool) -> Piece {
-    let negative = pieces.iter().all(|p| p.negative) || pieces.first().is_some_and(|p| p.negative);
-    if negative {
-        pieces.iter_mut().for_each(|p| p.negative = !p.negative);
+/// Several terms with a factor before them, or behind: in brackets, if they are several, from which their common sign and coefficient
+/// are taken out.
+pub(super) fn bracketed(before: &str, mut pieces: Vec<Piece>, behind: &str) -> Piece {
+    let negative = pieces.first().is_some_and(|p| p.negative);
+    let coefficient = pieces.first().map_or(1.0, |p| p.coefficient);
+    let common = pieces.iter().all(|p| p.coefficient == coefficient);
+    for piece in &mut pieces {
+        piece.negative ^= negative;
+        if common {
+            piece.coefficient = 1.0;
+        }
     }
+    let coefficient = if common { coefficient } else { 1.0 };
     let text = match pieces.as_slice() {
-        [one] if one.text == "1" => factor.to_owned(),
-        [one] if behind => format!("{}{factor}", one.text),
-        [one] => format!("{factor}{}", one.text),
-        _ if behind => format!("({}){factor}", joined(&pieces)),
-        _ => format!("{factor}({})", joined(&pieces)),
+        [one] => format!("{before}{}{behind}", one.text),
+        _ => format!("{before}({}){behind}", joined(&pieces)),
     };
-    Piece { negative, text }
-}
-
-/// A coefficient and what it multiplies.
-pub(super) fn multiple(c: f64, of: &str) -> Piece {
-    let number = match rational(c.abs()) {
-        Some((1, 1)) if !of.is_empty() => String::new(),
-        Some((numerator, 1)) => numerator.to_string(),
-        Some((numerator, denominator)) => format!("\\tfrac{{{numerator}}}{{{denominator}}}"),
-        None => number(c.abs()),
-    };
-    Piece { negative: c < 0.0, text: format!("{number}{of}") }
+    Piece { negative, coefficient, text }
 }
 
 /// Six digits.
@@ -88,13 +100,27 @@ pub(super) fn harmonics(model: &ExplicitModel, m: &Monomial) -> String {
     m.harmonics(model.layout()).map(|h| symbols::harmonic(model.layout(), &h)).collect()
 }
 
-/// In which order terms are read: few sines and cosines first, cosines before sines, low degrees first.
-pub(super) fn order(model: &ExplicitModel, m: &Monomial) -> (usize, Vec<(usize, bool, Vec<i8>)>, usize, Vec<usize>) {
+/// In which order terms are read.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Order {
+    /// Few sines and cosines first, of few angles.
+    harmonics: Vec<(usize, i32)>,
+    /// Those of the first angles, and cosines before sines.
+    multiples: Vec<(Vec<i8>, bool)>,
+    /// Low degrees in the modal coordinates.
+    degree: usize,
+    variables: Vec<usize>,
+}
+
+pub(super) fn order(model: &ExplicitModel, m: &Monomial) -> Order {
     let layout = model.layout();
-    let all: Vec<_> =
-        m.harmonics(layout).map(|h| (h.group, h.sine, h.multiples.iter().rev().map(|k| -k).collect())).collect();
-    let of = m.powers(layout).iter().enumerate().filter(|(_, p)| **p != 0).map(|(v, _)| v).collect();
-    (all.len(), all, m.degree(layout), of)
+    let size = |k: &[i8]| k.iter().map(|k| i32::from(*k).abs()).sum();
+    Order {
+        harmonics: m.harmonics(layout).map(|h| (h.group, size(h.multiples))).collect(),
+        multiples: m.harmonics(layout).map(|h| (h.multiples.iter().map(|k| -k).collect(), h.sine)).collect(),
+        degree: m.degree(layout),
+        variables: m.powers(layout).iter().enumerate().filter(|(_, p)| **p != 0).map(|(v, _)| v).collect(),
+    }
 }
 
 /// A sum.
@@ -104,11 +130,11 @@ pub(super) fn sum(model: &ExplicitModel, sum: &Sum) -> Vec<Piece> {
     let mut out = Vec::new();
     for same in terms.chunk_by(|a, b| harmonics(model, &a.0) == harmonics(model, &b.0)) {
         let circular = harmonics(model, &same[0].0);
-        let pieces: Vec<Piece> = same.iter().map(|(m, c)| multiple(*c, &variables(model, m))).collect();
+        let pieces: Vec<Piece> = same.iter().map(|(m, c)| Piece::of(*c, variables(model, m))).collect();
         if circular.is_empty() {
             out.extend(pieces);
         } else {
-            out.push(bracketed(&circular, pieces, true));
+            out.push(bracketed("", pieces, &circular));
         }
     }
     out
