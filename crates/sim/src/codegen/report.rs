@@ -176,8 +176,8 @@ impl Weighing {
             restored: report.restored,
             forward_operations: report.forward_operations,
             inverse_operations: report.inverse_operations,
-            torque_error: report.torque_error,
-            acceleration_error: report.acceleration_error,
+            torque_error: report.torque_error(),
+            acceleration_error: report.acceleration_error(),
             reduced: report.uncoupled,
         }
     }
