@@ -28,13 +28,15 @@ from .errors import (
     Error,
     FileError,
     FormatError,
+    MissingExtraError,
     ModelError,
     NotFiniteError,
     RobotWarning,
     ScenarioError,
     ShapeError,
 )
-from .simulation import ContactImpact, SimulationResult, simulate
+from .results import ContactImpact, SimulationResult, read_mcap
+from .simulation import simulate
 
 __all__ = [
     "ArgumentError",
@@ -50,6 +52,7 @@ __all__ = [
     "FrequencyResponse",
     "Impact",
     "Linearization",
+    "MissingExtraError",
     "Mode",
     "ModelError",
     "NotFiniteError",
@@ -59,5 +62,6 @@ __all__ = [
     "ShapeError",
     "SimulationResult",
     "__version__",
+    "read_mcap",
     "simulate",
 ]

@@ -1,0 +1,27 @@
+//! What hangs on what, for drawings of a robot.
+
+use crate::robot::PyRobot;
+use pyo3::prelude::*;
+use std::collections::HashMap;
+
+#[pymethods]
+impl PyRobot {
+    /// Name of every link's parent in the URDF; `None` of the root.
+    #[getter]
+    fn link_parents(&self) -> HashMap<&str, Option<&str>> {
+        self.robot.links.iter().map(|link| (link.name.as_str(), link.parent.as_deref())).collect()
+    }
+
+    /// Centre of mass of every link that moves by itself, in the link's axes [m]; links fused to it count as parts of it.
+    #[getter]
+    fn centers_of_mass(&self) -> HashMap<&str, [f64; 3]> {
+        let bodies = self.robot.joints.iter().zip(&self.robot.bodies);
+        let massive = bodies.filter(|(_, body)| body.inertia.mass > 0.0);
+        massive
+            .map(|(joint, body)| {
+                let center = body.inertia.first_moment.to_array().map(|moment| moment / body.inertia.mass);
+                (joint.child_link.as_str(), center)
+            })
+            .collect()
+    }
+}
