@@ -12,14 +12,15 @@ impl PyRobot {
         self.robot.links.iter().map(|link| (link.name.as_str(), link.parent.as_deref())).collect()
     }
 
-    /// Centre of mass of every link that moves by itself, in the link's axes [m]; links fused to it count as parts of it.
+    /// Centre of mass of every link that moves by itself, in the link's axes [m]; links fused to it count as parts of it, and
+    /// one without mass has none.
     #[getter]
-    fn centers_of_mass(&self) -> HashMap<&str, [f64; 3]> {
+    fn centers_of_mass(&self) -> HashMap<&str, Option<[f64; 3]>> {
         let bodies = self.robot.joints.iter().zip(&self.robot.bodies);
-        let massive = bodies.filter(|(_, body)| body.inertia.mass > 0.0);
-        massive
+        bodies
             .map(|(joint, body)| {
-                let center = body.inertia.first_moment.to_array().map(|moment| moment / body.inertia.mass);
+                let mass = body.inertia.mass;
+                let center = (mass > 0.0).then(|| body.inertia.first_moment.to_array().map(|moment| moment / mass));
                 (joint.child_link.as_str(), center)
             })
             .collect()

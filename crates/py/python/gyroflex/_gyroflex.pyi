@@ -365,8 +365,8 @@ class Robot:
         """Name of every link's parent in the URDF; `None` of the root."""
 
     @property
-    def centers_of_mass(self) -> dict[str, list[float]]:
-        """Centre of mass of every link that moves by itself, in the link's axes [m]; links fused to it count as parts of it."""
+    def centers_of_mass(self) -> dict[str, list[float] | None]:
+        """Centre of mass of every link that moves by itself, in the link's axes [m]; `None` of one without mass."""
 
     @property
     def nq(self) -> int:

@@ -7,7 +7,7 @@ Functions draw with ``matplotlib.pyplot`` and return the axes; ``axes[0].figure.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +30,8 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#3
 GREY = "#9a9a9a"
 WIDTH, HEIGHT = 8.0, 2.4
 """Size of a panel [inch]."""
+FLAT = 1e-6
+"""Depth of what lies in a plane [m]."""
 
 
 def run(result: SimulationResult, panels: Sequence[str] | None = None, joints: Sequence[str] | None = None) -> list[Axes]:
@@ -143,13 +145,20 @@ def frequency_response(responses: FrequencyResponse | Iterable[FrequencyResponse
         for side, values, style in (("motor", response.motor, "--"), ("link", response.link, "-")):
             look = {"color": COLOURS[i % len(COLOURS)], "linestyle": style}
             magnitude.loglog(response.frequency, np.abs(values), label=f"{name}, {side}", **look)
-            phase.semilogx(response.frequency, np.rad2deg(np.unwrap(np.angle(values))), **look)
+            phase.semilogx(response.frequency, _phase(values), **look)
     magnitude.set_ylabel("position per torque\n[rad/(N m) or m/N]")
     _legend(magnitude)
     phase.set_ylabel("phase [°]")
     phase.yaxis.set_major_locator(extra("matplotlib.ticker", "plots").MultipleLocator(90))
     phase.set_xlabel("frequency [Hz]")
     return axes
+
+
+def _phase(values: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Phase without jumps, from above -360° to 0 at the first frequency [°]."""
+    phase = np.rad2deg(np.unwrap(np.angle(values)))
+    # Rounding must not make a turn of zero.
+    return phase - 360.0 * np.ceil((phase[0] - 1.0) / 360.0)  # type: ignore[no-any-return]
 
 
 def significance_map(
@@ -196,7 +205,7 @@ def significance_map(
             ratios[i, k] = _largest_significance(robot, pose)
     ax: Axes
     _, ax = _pyplot().subplots(figsize=(6.4, 5.2), layout="constrained")
-    mesh = ax.pcolormesh(across, up, ratios, shading="gouraud", cmap="viridis")
+    mesh = ax.pcolormesh(across, up, ratios, shading="gouraud", cmap="viridis", vmin=0.0)
     _pyplot().colorbar(mesh, ax=ax, label="largest significance ratio of any velocity [-]")
     ax.set(xlabel=f"{x} [rad or m]", ylabel=f"{y} [rad or m]", title=robot.name)
     return ax
@@ -222,7 +231,8 @@ def animate(
 ) -> FuncAnimation:
     """Animates a run as a stick figure.
 
-    Sticks go from the origin of every link to those of its children; a link without any is drawn twice as far as its centre of mass.
+    Sticks go from the origin of every link to those of its children; a link without any, or with all of them close to its origin, is
+    drawn twice as far as its centre of mass. Links without mass between the world and the first one with mass are left out.
 
     Parameters
     ----------
@@ -270,6 +280,10 @@ def animate(
     middle = (low + high) / 2
     for axis, half, center in zip("xyz", sides / 2, middle, strict=True):
         ax.set(**{f"{axis}lim": (center - half, center + half), f"{axis}label": f"{axis} [m]"})
+    elevation, azimuth = np.deg2rad(view)
+    towards = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+    for axis in np.array(list("xyz"))[(high - low < FLAT) | (np.abs(towards) > 0.999)]:
+        ax.set(**{f"{axis}ticks": [], f"{axis}label": ""})
     ax.set_box_aspect(sides)
     ax.view_init(*view)
     lines = [ax.plot(*stick.T, color=COLOURS[0], linewidth=3, marker="o", markersize=4, markerfacecolor="white")[0] for stick in sticks[0]]
@@ -297,17 +311,34 @@ def _positions(robot: Robot, result: SimulationResult) -> NDArray[np.float64]:
 
 def _sticks(robot: Robot, positions: NDArray[np.float64]) -> NDArray[np.float64]:
     """Both ends of every stick at every position, shape ``(positions, sticks, 2, 3)``, in the world."""
+    links = _links(robot)
+    poses = np.array([[robot.placement(link, q) for link in links] for q in positions])
+    index = {link: i for i, link in enumerate(links)}
+    axes, origins = poses[..., :3, :3], poses[..., :3, 3]
+    start, end, offset = map(np.array, zip(*_pairs(robot, index, origins[0]), strict=True))
+    return np.stack([origins[:, start], origins[:, end] + np.einsum("ksij,sj->ksi", axes[:, end], offset)], axis=2)
+
+
+def _links(robot: Robot) -> list[str]:
+    """Links that are drawn: all but those without mass between the world and the first one with, of joints that stand for a free root."""
     parents, centers = robot.link_parents, robot.centers_of_mass
-    pairs = [(parent, link, np.zeros(3)) for link, parent in parents.items() if parent is not None]
-    tips = [link for link in centers if link not in parents.values()]
-    pairs += [(link, link, 2 * np.asarray(centers[link])) for link in tips]
-    ends = np.empty((len(positions), len(pairs), 2, 3))
-    for k, q in enumerate(positions):
-        poses = {link: robot.placement(link, q) for link in parents}
-        for i, (start, end, offset) in enumerate(pairs):
-            ends[k, i, 0] = poses[start][:3, 3]
-            ends[k, i, 1] = poses[end][:3, :3] @ offset + poses[end][:3, 3]
-    return ends
+
+    def stands_for_root(link: str | None) -> bool:
+        return link is None or link not in centers or (centers[link] is None and stands_for_root(parents[link]))
+
+    return [link for link in parents if link not in centers or not stands_for_root(link)]
+
+
+def _pairs(robot: Robot, index: dict[str, int], origins: NDArray[np.float64]) -> Iterator[tuple[int, int, ArrayLike]]:
+    """Sticks as numbers of the links where they start and end, and what to go on by in the axes of the latter."""
+    lengths = dict.fromkeys(index, 0.0)
+    for link, parent in robot.link_parents.items():
+        if link in index and parent is not None and parent in index:
+            yield index[parent], index[link], np.zeros(3)
+            lengths[parent] = max(lengths[parent], float(np.linalg.norm(origins[index[link]] - origins[index[parent]])))
+    for link, center in robot.centers_of_mass.items():
+        if link in index and center is not None and lengths[link] < np.linalg.norm(center) / 4:
+            yield index[link], index[link], 2 * np.asarray(center)
 
 
 def _writer(path: str) -> str | None:
