@@ -337,7 +337,7 @@ def _pairs(robot: Robot, index: dict[str, int], origins: NDArray[np.float64]) ->
             yield index[parent], index[link], np.zeros(3)
             lengths[parent] = max(lengths[parent], float(np.linalg.norm(origins[index[link]] - origins[index[parent]])))
     for link, center in robot.centers_of_mass.items():
-        if link in index and center is not None and lengths[link] < np.linalg.norm(center) / 4:
+        if link in index and center is not None and lengths[link] < np.linalg.norm(center) / 2:
             yield index[link], index[link], 2 * np.asarray(center)
 
 
