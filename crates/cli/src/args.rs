@@ -7,6 +7,7 @@ mod compare;
 mod inverse;
 mod linear;
 mod set;
+mod sweep;
 
 pub use analyze::Analyze;
 pub use bench::Bench;
@@ -15,6 +16,7 @@ pub use compare::Compare;
 pub use inverse::Inverse;
 pub use linear::{Frf, Linearize, Modes, Pose};
 pub use set::Set;
+pub use sweep::Sweep;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -52,6 +54,7 @@ pub enum Command {
     Frf(Frf),
     Analyze(Analyze),
     Compare(Compare),
+    Sweep(Sweep),
     Bench(Bench),
     Export(Export),
     Codegen(Codegen),

@@ -17,6 +17,7 @@ mod output;
 mod pose;
 pub mod schema;
 pub mod simulate;
+pub mod sweep;
 
 use crate::args::Set;
 use crate::failure::{Failure, warn};

@@ -101,10 +101,15 @@ impl std::str::FromStr for Overrides {
         let Some((key, value)) = text.split_once('=') else {
             return Err(fault(text, "it has no value", "write KEY=VALUE, such as `controller.kp=400`"));
         };
-        let value = super::yaml::value(value)
-            .map_err(|e| fault(key, e.problem, "write KEY=VALUE, the value as in a YAML file"))?;
+        let value =
+            self::value(value).map_err(|e| fault(key, e.problem, "write KEY=VALUE, the value as in a YAML file"))?;
         Ok(Self::new().with(key.trim(), value))
     }
+}
+
+/// A value by itself, as in YAML.
+pub(crate) fn value(text: &str) -> Result<Value, Error> {
+    super::yaml::value(text)
 }
 
 /// The value that a key stands for; keys on the way that are not there are added.
