@@ -1,14 +1,15 @@
 //! Simulations, and their record as arrays by name.
 
 use crate::errors;
+use crate::overrides::overrides;
 use gyroflex_sim::error::{Error, ErrorKind};
-use gyroflex_sim::load::{Disk, LoadOptions, load};
+use gyroflex_sim::load::{Disk, LoadOptions, Overrides};
 use gyroflex_sim::record::{Impact, McapRecorder, MemoryRecorder, Struck, Table, TeeRecorder};
 use gyroflex_sim::scenario::ScenarioFile;
 use gyroflex_sim::simulate::Simulation;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyMapping, PyTuple};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -31,8 +32,10 @@ pub(crate) fn run_scenario<'py>(
     py: Python<'py>,
     scenario: PathBuf,
     log: Option<PathBuf>,
+    set: Option<&Bound<'py, PyMapping>>,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let run = py.detach(|| run(&scenario, log.as_deref()))?;
+    let overrides = overrides(set)?;
+    let run = py.detach(|| run(&scenario, log.as_deref(), &overrides))?;
     let info = run.memory.info();
     let metadata = PyDict::new(py);
     for (key, value) in &info.metadata {
@@ -57,9 +60,9 @@ fn told<'py>(py: Python<'py>, impact: &Impact, contacts: &[String]) -> PyResult<
     (impact.t, impact.energy_lost, names, impulse, before, after).into_pyobject(py)
 }
 
-fn run(scenario: &Path, log: Option<&Path>) -> PyResult<Run> {
-    let file = ScenarioFile::load(&Disk, scenario).map_err(errors::raise)?;
-    let robot = load(&file.robot_path(), &LoadOptions::default()).map_err(errors::raise)?;
+fn run(scenario: &Path, log: Option<&Path>, overrides: &Overrides) -> PyResult<Run> {
+    let file = ScenarioFile::load_with(&Disk, scenario, overrides).map_err(errors::raise)?;
+    let robot = file.load_robot(&Disk, &LoadOptions::default()).map_err(errors::raise)?;
     let mut simulation = Simulation::new(&robot, &file).map_err(errors::raise)?;
     let info = simulation.run_info();
     let mut memory = MemoryRecorder::new(info.clone());

@@ -35,6 +35,7 @@ from .errors import (
     ShapeError,
 )
 from .simulation import ContactImpact, SimulationResult, simulate
+from .sweep import SweepResult, sweep
 
 __all__ = [
     "ArgumentError",
@@ -58,6 +59,8 @@ __all__ = [
     "ScenarioError",
     "ShapeError",
     "SimulationResult",
+    "SweepResult",
     "__version__",
     "simulate",
+    "sweep",
 ]

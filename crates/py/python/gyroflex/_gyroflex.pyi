@@ -1,7 +1,7 @@
 """The compiled half of the package; `gyroflex` exports what users need of it."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
@@ -19,6 +19,7 @@ __all__ = [
     "Linearization",
     "Mode",
     "Robot",
+    "measure_scenario",
     "run_scenario",
     "__version__",
 ]
@@ -339,6 +340,7 @@ class Robot:
         floating: bool = False,
         model: _Model | None = None,
         mimic: Literal["refuse", "independent"] | None = None,
+        set: Mapping[str, object] | None = None,
     ) -> Robot:
         """Loads a robot YAML or a URDF."""
 
@@ -626,6 +628,7 @@ class Robot:
 def run_scenario(
     scenario: str | os.PathLike[str],
     log: str | os.PathLike[str] | None,
+    set: Mapping[str, object] | None,
 ) -> tuple[
     dict[str, NDArray[np.float64]],
     dict[str, tuple[str, ...]],
@@ -636,3 +639,6 @@ def run_scenario(
     DivergedError | None,
 ]:
     """Arrays and units by name, names of the joints, metadata, warnings, impacts, and the error of a run that diverged."""
+
+def measure_scenario(scenario: str | os.PathLike[str], set: Mapping[str, object] | None) -> dict[str, float]:
+    """Numbers of a run by name, as `gyroflex sweep` writes them."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from . import _gyroflex
-from .errors import RobotWarning
+from .errors import DivergedError, RobotWarning
 
 if TYPE_CHECKING:
     import numpy as np
@@ -117,7 +117,12 @@ class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
         return f"<SimulationResult: {self.t.size} samples of {len(self.joint_names)} joints{end}>"
 
 
-def simulate(scenario: str | os.PathLike[str], *, log: str | os.PathLike[str] | None = None) -> SimulationResult:
+def simulate(
+    scenario: str | os.PathLike[str],
+    *,
+    log: str | os.PathLike[str] | None = None,
+    set: Mapping[str, object] | None = None,
+) -> SimulationResult:
     """Runs a scenario YAML and returns what it recorded. Other threads go on meanwhile; Ctrl-C stops it.
 
     Parameters
@@ -126,6 +131,9 @@ def simulate(scenario: str | os.PathLike[str], *, log: str | os.PathLike[str] | 
         The scenario's file; the robot it names is looked for beside it.
     log
         Where to write an MCAP log as well. It is complete also after a run that diverged or was stopped.
+    set
+        Other values of keys, such as ``{"controller.kp": 400, "drives.joint2.transmission.stiffness": 1e4}``: keys of the
+        scenario, else of its robot's YAML (``robot.gravity`` where both have one), and anything that could be written there.
 
     Raises
     ------
@@ -136,13 +144,24 @@ def simulate(scenario: str | os.PathLike[str], *, log: str | os.PathLike[str] | 
 
     What was ignored or assumed is issued as ``RobotWarning`` and kept in the result's ``warnings``.
     """
-    arrays, units, joint_names, metadata, messages, impacts, error = _gyroflex.run_scenario(scenario, log)
+    result, error = record(scenario, log, set)
+    for message in result.warnings:
+        warnings.warn(message, RobotWarning, stacklevel=2)
+    if error is not None:
+        raise error
+    return result
+
+
+def record(
+    scenario: str | os.PathLike[str],
+    log: str | os.PathLike[str] | None,
+    set: Mapping[str, object] | None,
+) -> tuple[SimulationResult, DivergedError | None]:
+    """A run, and its error if it diverged; says nothing by itself."""
+    arrays, units, joint_names, metadata, messages, impacts, error = _gyroflex.run_scenario(scenario, log, set)
     path = None if log is None else os.fspath(log)
     struck = tuple(ContactImpact(*impact) for impact in impacts)
     result = SimulationResult(arrays, units, joint_names, metadata, tuple(messages), struck, path)
-    for message in messages:
-        warnings.warn(message, RobotWarning, stacklevel=2)
     if error is not None:
         error.result = result
-        raise error
-    return result
+    return result, error
