@@ -8,6 +8,8 @@ mod derivatives;
 mod errors;
 mod inverse;
 mod linear;
+mod links;
+mod log;
 mod matrices;
 mod operational;
 mod overrides;
@@ -29,6 +31,8 @@ mod _gyroflex {
     use crate::inverse::PyElasticInverse;
     #[pymodule_export]
     use crate::linear::{PyFrequencyResponse, PyLinearization, PyMode};
+    #[pymodule_export]
+    use crate::log::{PyRecord, read_log};
     #[pymodule_export]
     use crate::robot::PyRobot;
     #[pymodule_export]

@@ -28,13 +28,15 @@ from .errors import (
     Error,
     FileError,
     FormatError,
+    MissingExtraError,
     ModelError,
     NotFiniteError,
     RobotWarning,
     ScenarioError,
     ShapeError,
 )
-from .simulation import ContactImpact, SimulationResult, simulate
+from .results import ContactImpact, SimulationResult, read_mcap
+from .simulation import simulate
 from .sweep import SweepResult, sweep
 
 __all__ = [
@@ -51,6 +53,7 @@ __all__ = [
     "FrequencyResponse",
     "Impact",
     "Linearization",
+    "MissingExtraError",
     "Mode",
     "ModelError",
     "NotFiniteError",
@@ -61,6 +64,7 @@ __all__ = [
     "SimulationResult",
     "SweepResult",
     "__version__",
+    "read_mcap",
     "simulate",
     "sweep",
 ]

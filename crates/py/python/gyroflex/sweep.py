@@ -16,8 +16,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _gyroflex
+from ._extras import extra
 from .errors import ArgumentError, DivergedError, FileError, ModelError, ScenarioError
-from .simulation import SimulationResult, record
+from .results import SimulationResult
+from .simulation import attempt
 
 if TYPE_CHECKING:
     import pandas
@@ -64,9 +66,8 @@ class SweepResult(Mapping[str, "NDArray[Any]"]):
 
     def to_pandas(self) -> pandas.DataFrame:
         """The table as a ``pandas.DataFrame``."""
-        import pandas
-
-        return pandas.DataFrame(self._columns)
+        frame: pandas.DataFrame = extra("pandas", "pandas").DataFrame(self._columns)
+        return frame
 
 
 def sweep(
@@ -148,7 +149,7 @@ class _Run:
             if self.measure is None:
                 row: Mapping[str, Any] = _gyroflex.measure_scenario(self.scenario, values)
             else:
-                result, error = record(self.scenario, None, values)
+                result, error = attempt(self.scenario, None, values)
                 if error is not None:
                     raise error
                 row = self.measure(result)
@@ -194,7 +195,7 @@ def _on_threads(run: _Run, todo: Mapping[int, Values], n_jobs: int) -> Iterator[
 
 def _on_cluster(run: _Run, todo: Mapping[int, Values], client: Any) -> Iterator[tuple[int, dict[str, Any]]]:
     """Runs with their numbers as they end. A few for every thread of the cluster are on their way, however many there are in all."""
-    from distributed import as_completed as completed
+    completed = extra("distributed", "dask").as_completed
 
     waiting = iter(todo.items())
     number: dict[str, int] = {}
@@ -264,7 +265,7 @@ def _check_output(target: Path, overwrite: bool) -> None:
     if target.exists() and not overwrite:
         raise FileError("it exists already", "output", str(target), "name another file, remove this one, or say `overwrite=True`")
     if target.suffix == ".parquet":
-        import pyarrow.parquet  # noqa: F401  # before hours of runs, not after
+        extra("pyarrow.parquet", "sweep")  # before hours of runs, not after
 
 
 def _check_last(run: _Run, runs: Sequence[Values], rows: Mapping[int, dict[str, Any]], path: Path | None) -> None:
@@ -304,10 +305,8 @@ def _write(target: Path, columns: Mapping[str, NDArray[Any]]) -> None:
     """Writes the table beside its place first: a file that is there is whole."""
     part = target.with_name(target.name + ".part")
     if target.suffix == ".parquet":
-        import pyarrow
-        import pyarrow.parquet
-
-        pyarrow.parquet.write_table(pyarrow.table({name: pyarrow.array(column) for name, column in columns.items()}), part)
+        pyarrow, parquet = extra("pyarrow", "sweep"), extra("pyarrow.parquet", "sweep")
+        parquet.write_table(pyarrow.table({name: pyarrow.array(column) for name, column in columns.items()}), part)
     else:
         with part.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
