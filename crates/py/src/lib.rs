@@ -12,8 +12,10 @@ mod links;
 mod log;
 mod matrices;
 mod operational;
+mod overrides;
 mod robot;
 mod simulate;
+mod sweep;
 mod workspace;
 
 use pyo3::prelude::*;
@@ -35,6 +37,8 @@ mod _gyroflex {
     use crate::robot::PyRobot;
     #[pymodule_export]
     use crate::simulate::run_scenario;
+    #[pymodule_export]
+    use crate::sweep::measure_scenario;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -2,14 +2,15 @@
 
 use crate::errors;
 use crate::log::PyRecord;
+use crate::overrides::overrides;
 use gyroflex_sim::error::{Error, ErrorKind};
-use gyroflex_sim::load::{Disk, LoadOptions, load};
+use gyroflex_sim::load::{Disk, LoadOptions, Overrides};
 use gyroflex_sim::record::{Impact, McapRecorder, MemoryRecorder, Struck, Table, TeeRecorder};
 use gyroflex_sim::scenario::ScenarioFile;
 use gyroflex_sim::simulate::Simulation;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyTuple};
+use pyo3::types::{IntoPyDict, PyDict, PyMapping, PyTuple};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -33,8 +34,10 @@ pub(crate) fn run_scenario<'py>(
     py: Python<'py>,
     scenario: PathBuf,
     log: Option<PathBuf>,
+    set: Option<&Bound<'py, PyMapping>>,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let run = py.detach(|| run(&scenario, log.as_deref()))?;
+    let overrides = overrides(set)?;
+    let run = py.detach(|| run(&scenario, log.as_deref(), &overrides))?;
     let info = run.memory.info();
     let metadata = info.metadata.clone().into_py_dict(py)?;
     let named = by_name(py, &run.memory.table())?;
@@ -61,9 +64,9 @@ fn told<'py>(py: Python<'py>, impact: &Impact, contacts: &[String]) -> PyResult<
     (impact.t, impact.energy_lost, names, impulse, before, after).into_pyobject(py)
 }
 
-fn run(scenario: &Path, log: Option<&Path>) -> PyResult<Run> {
-    let file = ScenarioFile::load(&Disk, scenario).map_err(errors::raise)?;
-    let robot = load(&file.robot_path(), &LoadOptions::default()).map_err(errors::raise)?;
+fn run(scenario: &Path, log: Option<&Path>, overrides: &Overrides) -> PyResult<Run> {
+    let file = ScenarioFile::load_with(&Disk, scenario, overrides).map_err(errors::raise)?;
+    let robot = file.load_robot(&Disk, &LoadOptions::default()).map_err(errors::raise)?;
     let mut simulation = Simulation::new(&robot, &file).map_err(errors::raise)?;
     let info = simulation.run_info();
     let mut memory = MemoryRecorder::new(info.clone());

@@ -37,6 +37,7 @@ from .errors import (
 )
 from .results import ContactImpact, SimulationResult, read_mcap
 from .simulation import simulate
+from .sweep import SweepResult, sweep
 
 __all__ = [
     "ArgumentError",
@@ -61,7 +62,9 @@ __all__ = [
     "ScenarioError",
     "ShapeError",
     "SimulationResult",
+    "SweepResult",
     "__version__",
     "read_mcap",
     "simulate",
+    "sweep",
 ]

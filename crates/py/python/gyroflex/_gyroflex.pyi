@@ -1,7 +1,7 @@
 """The compiled half of the package; `gyroflex` exports what users need of it."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
@@ -20,6 +20,7 @@ __all__ = [
     "Mode",
     "Record",
     "Robot",
+    "measure_scenario",
     "read_log",
     "run_scenario",
     "__version__",
@@ -341,6 +342,7 @@ class Robot:
         floating: bool = False,
         model: _Model | None = None,
         mimic: Literal["refuse", "independent"] | None = None,
+        set: Mapping[str, object] | None = None,
     ) -> Robot:
         """Loads a robot YAML or a URDF."""
 
@@ -646,8 +648,12 @@ class Record:
 def run_scenario(
     scenario: str | os.PathLike[str],
     log: str | os.PathLike[str] | None,
+    set: Mapping[str, object] | None,
 ) -> tuple[_Named, tuple[str, ...], dict[str, str], list[str], _Impacts, Record, DivergedError | None]:
     """Arrays, units and columns by name; names of the joints, metadata, warnings, impacts, record, and the error of a run that diverged."""
+
+def measure_scenario(scenario: str | os.PathLike[str], set: Mapping[str, object] | None) -> dict[str, float]:
+    """Numbers of a run by name, as `gyroflex sweep` writes them."""
 
 def read_log(path: str | os.PathLike[str]) -> tuple[_Named, tuple[str, ...], dict[str, str], _Impacts, bool]:
     """Arrays, units and columns by name; names of the joints, metadata, impacts, and whether the log was finished."""
