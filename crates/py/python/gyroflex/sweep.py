@@ -8,6 +8,7 @@ import importlib.util
 import itertools
 import json
 import os
+import uuid
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing
@@ -204,27 +205,20 @@ def _on_cluster(run: _Run, todo: Mapping[int, Values], client: Any) -> Ended:
     """Runs with their numbers as they end. A few for every thread of the cluster are on their way, however many there are in all."""
     completed = extra("distributed", "dask").as_completed
 
-    waiting = iter(todo.items())
-    number: dict[str, int] = {}
+    waiting, name = iter(todo.items()), f"sweep-{uuid.uuid4().hex}"
 
     def submit(count: int) -> list[Any]:
-        futures = []
-        for i, values in itertools.islice(waiting, count):
-            future = client.submit(run, values, pure=False)
-            number[future.key] = i
-            futures.append(future)
-        return futures
+        some = itertools.islice(waiting, count)
+        return [client.submit(run, values, key=f"{name}-{i}") for i, values in some]
 
-    ahead = max(8, 4 * sum(client.nthreads().values()))
-    under_way = completed(submit(ahead))
+    under_way = completed(submit(max(8, 4 * sum(client.nthreads().values()))))
     try:
         for future in under_way:
-            row = future.result()
-            yield number.pop(future.key), row
+            yield int(future.key.removeprefix(f"{name}-")), future.result()
             for another in submit(1):
                 under_way.add(another)
     finally:
-        client.cancel([future for future in under_way.futures])
+        client.cancel(list(under_way.futures))
 
 
 class _Journal:
@@ -288,7 +282,8 @@ def _columns(swept: tuple[str, ...], runs: Sequence[Values], rows: Sequence[Mapp
     measured = next((tuple(row) for row in rows if "error" not in row), ())
     for i, row in enumerate(rows):
         if "error" not in row and tuple(row) != measured:
-            raise ArgumentError(f"run {i} measured other things than the runs before it: {', '.join(row)}", "argument `measure`", remedy="measure the same for every run")
+            problem = f"run {i} measured other things than the runs before it: {', '.join(row)}"
+            raise ArgumentError(problem, "argument `measure`", remedy="measure the same for every run")
     columns = {key: _array([run[key] for run in runs]) for key in swept}
     columns.update({name: _array([row.get(name) for row in rows]) for name in measured})
     columns["error"] = np.array([row.get("error", "") for row in rows], dtype=object)
