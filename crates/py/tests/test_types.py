@@ -39,7 +39,7 @@ def test_example_runs(arm_file: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_example_of_pictures_runs(arm_file: Path, tmp_path: Path) -> None:
     scenario = arm_file.parent / "look.yaml"
-    scenario.write_text("{robot: robot.yaml, duration: 0.4, integrator: {method: rk4, step: 1.0e-4}, log: {rate: 500}}")
+    scenario.write_text("{robot: robot.yaml, duration: 0.2, integrator: {method: rk4, step: 1.0e-4}, log: {rate: 500}}")
     matplotlib.use("Agg")
     try:
         typed_example.look(scenario, tmp_path)

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import gyroflex
+import matplotlib.pyplot as plt
 import numpy as np
 from gyroflex import plots
 from numpy.typing import NDArray
@@ -43,7 +44,8 @@ def look(scenario: Path, folder: Path) -> None:
     again = gyroflex.read_mcap(folder / "run.mcap")
     print(again, again.to_pandas().shape)
     robot = gyroflex.Robot.load(scenario.parent / "robot.yaml")
-    run.plot(["position", "energy"], joints=run.joint_names[:1])[0].figure.savefig(folder / "run.png")
+    run.plot(["position", "energy"], joints=run.joint_names[:1])
+    plt.savefig(folder / "run.png")
     plots.frequency_response(robot.frequency_response(robot.joint_names[0]), labels=["first"])
     plots.significance_map(robot, *robot.joint_names[:2], points=3).set_title("significance")
     plots.animate(robot, run, folder / "run.gif", fps=5)

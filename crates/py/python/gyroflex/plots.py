@@ -1,7 +1,7 @@
 """Pictures of runs and robots with matplotlib (``pip install gyroflex[plots]``).
 
-Functions draw with ``matplotlib.pyplot`` and return the axes; ``axes[0].figure.savefig("run.png")`` keeps a picture, and
-``plt.show()`` opens a window.
+Functions draw a new figure with ``matplotlib.pyplot`` and return its axes; ``plt.savefig("run.png")`` keeps it, and ``plt.show()``
+opens a window.
 """
 
 from __future__ import annotations
