@@ -72,6 +72,26 @@ fn the_table_is_the_same_on_any_number_of_threads_and_after_any_interruption() {
 }
 
 #[test]
+fn ctrl_c_keeps_the_runs_that_are_done_and_the_same_command_goes_on() {
+    let here = pendulum("sweep_interrupted");
+    // Short runs, and one that takes minutes.
+    let set = ["sweep", "scenario.yaml", "-o", "table.csv", "--jobs", "2", "--set", "duration=0.05,0.06,0.07,1000"];
+    let child = process::start(&here, &set);
+    let lines = || fs::read_to_string(here.join("table.csv")).map_or(0, |text| text.lines().count());
+    while lines() < 4 {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let killed = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(killed.expect("there is a `kill`").success());
+    let ended = process::end(child);
+    assert_eq!((ended.code, lines()), (Some(130), 4), "{}", ended.err);
+    assert!(ended.err.contains("after 3 of 4 runs"), "{}", ended.err);
+    let shorter = [&set[..7], &["duration=0.05,0.06,0.07,0.08"]].concat();
+    assert_eq!(gyroflex(&here, &shorter).code, Some(0));
+    assert_eq!(lines(), 5);
+}
+
+#[test]
 fn a_table_of_something_else_is_not_written_over() {
     let here = pendulum("sweep_spares");
     assert_eq!(sweep(&here, &["-o", "table.csv"]).code, Some(0));

@@ -166,6 +166,8 @@ def test_what_would_meet_every_run_ends_the_sweep(path: Path, tmp_path: Path) ->
         sweep(tmp_path / "nowhere.yaml")
     with pytest.raises(ZeroDivisionError):
         sweep(path, measure=lambda _: {"x": 1 / 0})
+    with pytest.raises(gyroflex.ArgumentError, match="measure"):
+        sweep(path, measure=lambda _: {"error": 1.0})
     for values in ({STIFFNESS: []}, [], [{"a": 1}, {"b": 1}]):
         with pytest.raises(gyroflex.ArgumentError, match="values"):
             sweep(path, values)

@@ -156,6 +156,9 @@ class _Run:
                 if error is not None:
                     raise error
                 row = self.measure(result)
+                if "error" in row:
+                    remedy = "name it otherwise: that column says why a run failed"
+                    raise ArgumentError("it measures `error`", "argument `measure`", remedy=remedy)
         except (DivergedError, ModelError, ScenarioError) as error:
             return {"error": str(error).splitlines()[0]}
         return {str(name): _plain(value) for name, value in row.items()}
@@ -240,9 +243,11 @@ class _Journal:
         for line in kept.splitlines()[1:]:
             i, row = json.loads(line)
             self.rows[i] = row
-        self._file = self.path.open("w", encoding="utf-8")
-        self._file.write(kept or head)
-        self._file.flush()
+        self._file = self.path.open("a", encoding="utf-8")
+        self._file.truncate(len(kept.encode()))
+        if not kept:
+            self._file.write(head)
+            self._file.flush()
 
     def add(self, i: int, row: Mapping[str, Any]) -> None:
         """Keeps a run, one write a line."""
