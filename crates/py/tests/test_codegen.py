@@ -37,7 +37,7 @@ def test_module_computes_what_the_robot_does(puma: gyroflex.Robot) -> None:
 def test_kept_symbol_is_an_argument(puma: gyroflex.Robot) -> None:
     code = puma.codegen("gravity", keep_symbol=["link6.mass"])
     arguments = code.report["functions"][0]["arguments"]
-    assert [name for name, _ in arguments] == ["q", "link6_mass"]
+    assert [name for name, _ in arguments] == ["q", "parameters"]
     module = code.module()
     q = np.full((1, puma.nv), 0.3)
     light, heavy = (module.gravity_torques(q, np.array([[mass]]))[0] for mass in (0.09, 1.09))
