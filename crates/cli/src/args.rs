@@ -6,6 +6,8 @@ mod codegen;
 mod compare;
 mod inverse;
 mod linear;
+mod set;
+mod sweep;
 
 pub use analyze::Analyze;
 pub use bench::Bench;
@@ -13,6 +15,8 @@ pub use codegen::{Codegen, LanguageName};
 pub use compare::Compare;
 pub use inverse::Inverse;
 pub use linear::{Frf, Linearize, Modes, Pose};
+pub use set::Set;
+pub use sweep::Sweep;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -50,6 +54,7 @@ pub enum Command {
     Frf(Frf),
     Analyze(Analyze),
     Compare(Compare),
+    Sweep(Sweep),
     Bench(Bench),
     Export(Export),
     Codegen(Codegen),
@@ -66,6 +71,7 @@ Examples:
   gyroflex simulate                                    # the PUMA 560, into puma560.mcap
   gyroflex simulate robots/iiwa14/track.yaml
   gyroflex simulate track.yaml -o run.mcap --csv run.csv --model reduced --duration 2
+  gyroflex simulate track.yaml --set drives.joint2.transmission.stiffness=1e4 --set controller.kp=400
 
 Open the log in Foxglove, Rerun or PlotJuggler. On Ctrl-C or when the motion diverges, the log is completed up to that moment.
 Exit codes: 0 done, 1 error or diverged, 2 wrong command line, 130 interrupted.")]
@@ -87,6 +93,8 @@ pub struct Simulate {
     /// Print the summary as JSON
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 /// Show what a robot ended up with: joints, drives, frames, masses, modes, and where each number came from.
@@ -104,6 +112,8 @@ pub struct Info {
     /// Put the root on a floating joint
     #[arg(long)]
     pub floating: bool,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 /// Calculate dynamics: reads JSON lines, prints a JSON line for each.
@@ -160,6 +170,8 @@ pub struct Eval {
     /// Put the root on a floating joint
     #[arg(long)]
     pub floating: bool,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 /// Write a robot as source code, for controllers that can read no files.
@@ -193,6 +205,8 @@ pub struct Export {
     /// Put the root on a floating joint
     #[arg(long)]
     pub floating: bool,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 /// Print the JSON Schema of a YAML file, for editors that complete and check.

@@ -25,6 +25,7 @@ fn main() -> ExitCode {
         Command::Frf(args) => commands::frf::run(args, cli.quiet),
         Command::Analyze(args) => commands::analyze::run(args, cli.quiet),
         Command::Compare(args) => commands::compare::run(args, cli.quiet),
+        Command::Sweep(args) => commands::sweep::run(args, cli.quiet),
         Command::Bench(args) => commands::bench::run(args, cli.quiet),
         Command::Export(args) => commands::export::run(args, cli.quiet),
         Command::Codegen(args) => commands::codegen::run(args, cli.quiet),

@@ -9,10 +9,14 @@ mod derivatives;
 mod errors;
 mod inverse;
 mod linear;
+mod links;
+mod log;
 mod matrices;
 mod operational;
+mod overrides;
 mod robot;
 mod simulate;
+mod sweep;
 mod workspace;
 
 use pyo3::prelude::*;
@@ -31,9 +35,13 @@ mod _gyroflex {
     #[pymodule_export]
     use crate::linear::{PyFrequencyResponse, PyLinearization, PyMode};
     #[pymodule_export]
+    use crate::log::{PyRecord, read_log};
+    #[pymodule_export]
     use crate::robot::PyRobot;
     #[pymodule_export]
     use crate::simulate::run_scenario;
+    #[pymodule_export]
+    use crate::sweep::measure_scenario;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

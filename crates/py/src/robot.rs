@@ -4,6 +4,7 @@ use crate::arguments::{self, Layout};
 use crate::arrays::{Matrix, Vector, matrix, vector};
 use crate::errors;
 use crate::inverse::Inverses;
+use crate::overrides::overrides;
 use crate::workspace::{Pool, Workspace};
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex_sim::Robot;
@@ -13,6 +14,7 @@ use gyroflex_sim::load::{LoadOptions, load};
 use gyroflex_sim::robot::Link;
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyMapping;
 use std::path::PathBuf;
 
 /// A robot with its drives, loaded from files. It never changes, and any number of threads may use it at once.
@@ -53,14 +55,24 @@ impl PyRobot {
     /// mimic
     ///     What to do with joints that mimic another one, instead of what the file says: `refuse` the robot, or let them
     ///     move on their own, `independent` of the other.
+    /// set
+    ///     Other values of keys of the robot's YAML, such as `{"drives.joint2.transmission.stiffness": 1e4}`: anything that could
+    ///     be written there.
     ///
     /// What of the file was ignored or assumed is issued as `RobotWarning` and kept in `warnings`.
     #[staticmethod]
-    #[pyo3(signature = (path, *, floating=false, model=None, mimic=None))]
-    fn load(py: Python<'_>, path: PathBuf, floating: bool, model: Option<&str>, mimic: Option<&str>) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, floating=false, model=None, mimic=None, set=None))]
+    fn load(
+        py: Python<'_>,
+        path: PathBuf,
+        floating: bool,
+        model: Option<&str>,
+        mimic: Option<&str>,
+        set: Option<&Bound<'_, PyMapping>>,
+    ) -> PyResult<Self> {
         let model = model.map(arguments::fidelity).transpose()?;
         let mimic = mimic.map(arguments::mimic).transpose()?;
-        let options = LoadOptions { floating, model, mimic, ..LoadOptions::default() };
+        let options = LoadOptions { floating, model, mimic, overrides: overrides(set)?, ..LoadOptions::default() };
         let robot = py.detach(|| load(&path, &options)).map_err(errors::raise)?;
         let lowered = robot.model(robot.fidelity).map_err(errors::raise)?;
         let (nq, nv, modes) = (lowered.nq(), lowered.nv(), robot.flexible.modes());

@@ -1,14 +1,16 @@
 //! Simulations, and their record as arrays by name.
 
 use crate::errors;
+use crate::log::PyRecord;
+use crate::overrides::overrides;
 use gyroflex_sim::error::{Error, ErrorKind};
-use gyroflex_sim::load::{Disk, LoadOptions, load};
+use gyroflex_sim::load::{Disk, LoadOptions, Overrides};
 use gyroflex_sim::record::{Impact, McapRecorder, MemoryRecorder, Struck, Table, TeeRecorder};
 use gyroflex_sim::scenario::ScenarioFile;
 use gyroflex_sim::simulate::Simulation;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{IntoPyDict, PyDict, PyMapping, PyTuple};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -25,25 +27,30 @@ struct Run {
 }
 
 /// Runs a scenario with the interpreter released; `gyroflex.simulation` makes a `SimulationResult` of what it returns:
-/// arrays and units by name, names of the joints, metadata, warnings, impacts, and the error of a run that diverged.
+/// arrays, units and columns by name; names of the joints, metadata, warnings, impacts, the record to write a log of, and the error
+/// of a run that diverged.
 #[pyfunction]
 pub(crate) fn run_scenario<'py>(
     py: Python<'py>,
     scenario: PathBuf,
     log: Option<PathBuf>,
+    set: Option<&Bound<'py, PyMapping>>,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let run = py.detach(|| run(&scenario, log.as_deref()))?;
+    let overrides = overrides(set)?;
+    let run = py.detach(|| run(&scenario, log.as_deref(), &overrides))?;
     let info = run.memory.info();
-    let metadata = PyDict::new(py);
-    for (key, value) in &info.metadata {
-        metadata.set_item(key, value)?;
-    }
-    let (arrays, units) = by_name(py, &run.memory.table())?;
+    let metadata = info.metadata.clone().into_py_dict(py)?;
+    let named = by_name(py, &run.memory.table())?;
     let joints = PyTuple::new(py, &info.joints)?;
     let error = run.diverged.map(|e| errors::raise(e).into_value(py));
-    let impacts = run.memory.impacts().iter().map(|impact| told(py, impact, &info.contacts));
-    let impacts = PyTuple::new(py, impacts.collect::<PyResult<Vec<_>>>()?)?;
-    (arrays, units, joints, metadata, run.warnings, impacts, error).into_pyobject(py)
+    let impacts = all_told(py, run.memory.impacts(), &info.contacts)?;
+    let record = PyRecord(run.memory);
+    (named, joints, metadata, run.warnings, impacts, record, error).into_pyobject(py)
+}
+
+pub(crate) fn all_told<'py>(py: Python<'py>, impacts: &[Impact], contacts: &[String]) -> PyResult<Bound<'py, PyTuple>> {
+    let impacts = impacts.iter().map(|impact| told(py, impact, contacts));
+    PyTuple::new(py, impacts.collect::<PyResult<Vec<_>>>()?)
 }
 
 /// An impact: time, energy lost, names of the contacts, and of each its impulse and its velocities before and after.
@@ -57,9 +64,9 @@ fn told<'py>(py: Python<'py>, impact: &Impact, contacts: &[String]) -> PyResult<
     (impact.t, impact.energy_lost, names, impulse, before, after).into_pyobject(py)
 }
 
-fn run(scenario: &Path, log: Option<&Path>) -> PyResult<Run> {
-    let file = ScenarioFile::load(&Disk, scenario).map_err(errors::raise)?;
-    let robot = load(&file.robot_path(), &LoadOptions::default()).map_err(errors::raise)?;
+fn run(scenario: &Path, log: Option<&Path>, overrides: &Overrides) -> PyResult<Run> {
+    let file = ScenarioFile::load_with(&Disk, scenario, overrides).map_err(errors::raise)?;
+    let robot = file.load_robot(&Disk, &LoadOptions::default()).map_err(errors::raise)?;
     let mut simulation = Simulation::new(&robot, &file).map_err(errors::raise)?;
     let info = simulation.run_info();
     let mut memory = MemoryRecorder::new(info.clone());
@@ -90,9 +97,9 @@ fn run(scenario: &Path, log: Option<&Path>) -> PyResult<Run> {
 }
 
 /// Columns `q.joint1`, `q.joint2`, … as one array `q` of a row per sample, those of a contact's force as `contact.name.force`; all others as vectors.
-/// Poses of the links, which follow from `q`, stay in the log.
-fn by_name<'py>(py: Python<'py>, table: &Table) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
-    let (arrays, units) = (PyDict::new(py), PyDict::new(py));
+/// Poses of the links, which follow from `q`, stay in the log. Returns arrays, and of their columns the units and names.
+pub(crate) fn by_name<'py>(py: Python<'py>, table: &Table) -> PyResult<[Bound<'py, PyDict>; 3]> {
+    let [arrays, units, names] = [(); 3].map(|()| PyDict::new(py));
     let quantity = |i: usize| array_of(&table.columns[i].name);
     let mut first = 0;
     while first < table.columns.len() {
@@ -101,6 +108,7 @@ fn by_name<'py>(py: Python<'py>, table: &Table) -> PyResult<(Bound<'py, PyDict>,
             let column = &table.columns[first];
             arrays.set_item(&column.name, PyArray1::from_slice(py, &table.values[first]))?;
             units.set_item(&column.name, (column.unit,))?;
+            names.set_item(&column.name, (&column.name,))?;
             first = end;
             continue;
         };
@@ -112,10 +120,11 @@ fn by_name<'py>(py: Python<'py>, table: &Table) -> PyResult<(Bound<'py, PyDict>,
             let rows: Vec<f64> = (0..table.len()).flat_map(|k| columns.iter().map(move |c| c[k])).collect();
             arrays.set_item(&name, PyArray1::from_vec(py, rows).reshape([table.len(), end - first])?)?;
             units.set_item(&name, PyTuple::new(py, table.columns[first..end].iter().map(|c| c.unit))?)?;
+            names.set_item(&name, PyTuple::new(py, table.columns[first..end].iter().map(|c| &c.name))?)?;
         }
         first = end;
     }
-    Ok((arrays, units))
+    Ok([arrays, units, names])
 }
 
 /// The array that a column is a part of; `None` if it is a vector of its own.

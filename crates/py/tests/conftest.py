@@ -107,3 +107,17 @@ def random_state(robot: gyroflex.Robot, rng: np.random.Generator) -> dict[str, n
         "theta": theta,
         "thetad": rng.normal(size=robot.nv),
     }
+
+
+def same_result(one: gyroflex.SimulationResult, other: gyroflex.SimulationResult) -> None:
+    """Fails unless two results have the same numbers and impacts. Logs keep no sign of zeros."""
+    assert list(one) == list(other)
+    assert (one.units, one.columns, one.joint_names) == (other.units, other.columns, other.joint_names)
+    for name in one:
+        np.testing.assert_array_equal(one[name], other[name], err_msg=name)
+    assert len(one.impacts) == len(other.impacts)
+    for a, b in zip(one.impacts, other.impacts, strict=True):
+        assert (a.time, a.energy_lost, a.contacts) == (b.time, b.energy_lost, b.contacts)
+        np.testing.assert_array_equal(
+            [a.impulse, a.velocity_before, a.velocity_after], [b.impulse, b.velocity_before, b.velocity_after]
+        )

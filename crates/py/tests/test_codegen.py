@@ -15,7 +15,8 @@ ROBOTS = PROJECT / "robots"
 
 @pytest.fixture(scope="module")
 def puma() -> gyroflex.Robot:
-    return gyroflex.Robot.load(ROBOTS / "puma560" / "robot.yaml")
+    with pytest.warns(gyroflex.RobotWarning, match="triangle inequality"):
+        return gyroflex.Robot.load(ROBOTS / "puma560" / "robot.yaml")
 
 
 def states(robot: gyroflex.Robot, count: int) -> list[np.ndarray]:

@@ -31,6 +31,7 @@ pub mod reference;
 pub mod robot;
 pub mod scenario;
 pub mod simulate;
+pub mod sweep;
 pub mod walk;
 pub mod zeros;
 

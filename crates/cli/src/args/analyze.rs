@@ -1,6 +1,6 @@
 //! What `gyroflex analyze` may be told.
 
-use super::picture;
+use super::{Set, picture};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -55,6 +55,8 @@ pub struct Analyze {
     /// Put the root on a floating joint
     #[arg(long)]
     pub floating: bool,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -1,6 +1,6 @@
 //! What `gyroflex bench` may be told.
 
-use super::ModelName;
+use super::{ModelName, Set};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -30,4 +30,6 @@ pub struct Bench {
     /// Put the root on a floating joint
     #[arg(long)]
     pub floating: bool,
+    #[command(flatten)]
+    pub set: Set,
 }

@@ -1,4 +1,4 @@
-use super::{ModelName, Scalar};
+use super::{ModelName, Scalar, Set};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -61,6 +61,8 @@ pub struct Codegen {
     /// Put the root on a floating joint
     #[arg(long)]
     pub floating: bool,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 /// Languages to generate.

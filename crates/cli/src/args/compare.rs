@@ -1,5 +1,6 @@
 //! What `gyroflex compare` may be told.
 
+use super::Set;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -29,6 +30,8 @@ pub struct Compare {
     /// Print JSON, with every run
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 fn factor(text: &str) -> Result<f64, String> {

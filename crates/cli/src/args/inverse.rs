@@ -1,6 +1,6 @@
 //! What `gyroflex inverse` may be told.
 
-use super::{ModelName, seconds};
+use super::{ModelName, Set, seconds};
 use clap::{Args, ValueEnum};
 use gyroflex_sim::zeros::InverseOutput;
 use std::path::PathBuf;
@@ -45,6 +45,8 @@ pub struct Inverse {
     /// Print the summary as JSON
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 /// The outputs an inverse can be given.

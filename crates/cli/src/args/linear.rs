@@ -1,6 +1,6 @@
 //! What the commands about linear models may be told.
 
-use super::{ModelName, picture, seconds};
+use super::{ModelName, Set, picture, seconds};
 use clap::{Args, ValueEnum};
 use gyroflex_sim::linearize::KeptFriction;
 use std::path::PathBuf;
@@ -22,6 +22,8 @@ pub struct Pose {
     /// Put the root on a floating joint, at the origin unless --q leads with x,y,z,qx,qy,qz,qw
     #[arg(long)]
     pub floating: bool,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 /// Linearize a robot: the matrices A, B, C, D of a state-space model about an equilibrium or along a motion.

@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 
 pub fn run(args: &Analyze, quiet: bool) -> Result<(), Failure> {
-    let robot = super::load(&args.robot, args.floating, quiet)?;
+    let robot = super::load(&args.robot, args.floating, &args.set, quiet)?;
     let defaults = Options::default();
     let options = Options {
         samples: args.samples.map_or(defaults.samples, |n| n as usize),

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(2);
 
 pub fn run(args: &Bench, quiet: bool) -> Result<(), Failure> {
-    let robot = load(&args.robot, args.floating, quiet)?;
+    let robot = load(&args.robot, args.floating, &args.set, quiet)?;
     let models = models(&robot, args.model.map(Into::into));
     let stop = stop_flag(quiet, "print what has been finished");
     let bar = progress_bar(true, "measuring");

@@ -11,7 +11,7 @@ use gyroflex_sim::load::Disk;
 use std::sync::atomic::Ordering;
 
 pub fn run(args: &Codegen, quiet: bool) -> Result<(), Failure> {
-    let robot = load(&args.robot, args.floating, quiet)?;
+    let robot = load(&args.robot, args.floating, &args.set, quiet)?;
     let along = args.along.as_deref().map(|path| ScenarioFile::load(&Disk, path)).transpose()?;
     let request = Request {
         what: args.what.clone(),

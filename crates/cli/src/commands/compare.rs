@@ -5,7 +5,7 @@ use crate::failure::{Failure, print, warn};
 use crate::progress::{STEPS, progress_bar};
 use gyroflex_sim::ScenarioFile;
 use gyroflex_sim::compare::{Compared, Variation, compare};
-use gyroflex_sim::load::{self, Disk, LoadOptions};
+use gyroflex_sim::load::{Disk, LoadOptions};
 use serde_json::json;
 
 /// A scenario and its runs, the plant as it is first.
@@ -21,8 +21,8 @@ pub fn run(args: &Compare, quiet: bool) -> Result<(), Failure> {
     let bar = progress_bar(quiet, "comparing");
     let mut rows = Vec::with_capacity(args.scenarios.len());
     for (i, path) in args.scenarios.iter().enumerate() {
-        let file = ScenarioFile::load(&Disk, path)?;
-        let robot = load::load(&file.robot_path(), &LoadOptions::default())?;
+        let file = ScenarioFile::load_with(&Disk, path, &args.set.overrides())?;
+        let robot = file.load_robot(&Disk, &LoadOptions::default())?;
         warn(&robot.warnings, quiet);
         rows.push(Row {
             name: path.file_stem().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned()),

@@ -12,7 +12,7 @@ use std::io::{self, BufRead, BufReader, IsTerminal, Read};
 const MAX_LINE: u64 = 64 << 20;
 
 pub fn run(args: &Eval, quiet: bool) -> Result<(), Failure> {
-    let robot = load(&args.robot, args.floating, quiet)?;
+    let robot = load(&args.robot, args.floating, &args.set, quiet)?;
     let options = Options {
         fidelity: args.model.map(Into::into),
         matrices: args.matrices,

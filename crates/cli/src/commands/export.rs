@@ -6,7 +6,7 @@ use crate::failure::{Failure, print, say};
 use gyroflex_sim::export::{self, Precision};
 
 pub fn run(args: &Export, quiet: bool) -> Result<(), Failure> {
-    let robot = load(&args.robot, args.floating, quiet)?;
+    let robot = load(&args.robot, args.floating, &args.set, quiet)?;
     let fidelity = args.model.map_or(robot.fidelity, Into::into);
     let source = export::rust(&robot, fidelity, args.scalar.into())?;
     let Some(path) = &args.output else { return print(source.trim_end()) };

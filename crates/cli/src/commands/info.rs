@@ -7,7 +7,7 @@ use gyroflex_sim::info;
 
 pub fn run(args: &Info, quiet: bool) -> Result<(), Failure> {
     // The report has the warnings itself.
-    let mut robot = load(&args.robot, args.floating, true)?;
+    let mut robot = load(&args.robot, args.floating, &args.set, true)?;
     if quiet {
         robot.warnings.clear();
     }

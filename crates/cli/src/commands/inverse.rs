@@ -7,7 +7,7 @@ use crate::progress::{STEPS, progress_bar, stop_flag};
 use gyroflex_sim::ScenarioFile;
 use gyroflex_sim::error::{Error, ErrorKind};
 use gyroflex_sim::inverse::{InverseRun, InverseSummary};
-use gyroflex_sim::load::{self, Disk, LoadOptions};
+use gyroflex_sim::load::{Disk, LoadOptions};
 use gyroflex_sim::record::{CsvRecorder, McapRecorder, TeeRecorder};
 use gyroflex_sim::zeros::{AtPose, InverseOutput, Verdict};
 use std::fmt::Write;
@@ -16,11 +16,11 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 
 pub fn run(args: &Inverse, quiet: bool) -> Result<(), Failure> {
-    let mut file = ScenarioFile::load(&Disk, &args.scenario)?;
+    let mut file = ScenarioFile::load_with(&Disk, &args.scenario, &args.set.overrides())?;
     if let Some(duration) = args.duration {
         file.scenario.duration = duration;
     }
-    let robot = load::load(&file.robot_path(), &LoadOptions::default())?;
+    let robot = file.load_robot(&Disk, &LoadOptions::default())?;
     warn(&robot.warnings, quiet);
     let model = args.model.map(Into::into);
     let mut inverse = InverseRun::new(&robot, &file, model, args.damping, args.prescribe.into())?;

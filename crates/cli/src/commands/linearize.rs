@@ -57,7 +57,7 @@ fn models(args: &Linearize, outputs: &[Output], quiet: bool) -> Result<Vec<Linea
         };
         return Ok(vec![linearizer.linearize(&point, outputs)?]);
     };
-    let robot = load(&args.pose.robot, args.pose.floating, quiet)?;
+    let robot = load(&args.pose.robot, args.pose.floating, &args.pose.set, quiet)?;
     let file = ScenarioFile::load(&Disk, scenario)?;
     let fidelity = args.pose.model.map(Into::into);
     let mut motion = ReferenceMotion::new(&robot, &file, fidelity, args.pose.friction.into())?;

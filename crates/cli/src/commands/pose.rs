@@ -11,7 +11,7 @@ const ROOT: usize = 7;
 
 /// The robot, ready to be linearized.
 pub fn linearizer(pose: &Pose, quiet: bool) -> Result<Linearizer, Failure> {
-    let robot = load(&pose.robot, pose.floating, quiet)?;
+    let robot = load(&pose.robot, pose.floating, &pose.set, quiet)?;
     let fidelity = pose.model.map_or(robot.fidelity, Into::into);
     let linearizer = Linearizer::new(&robot, fidelity, pose.friction.into())?;
     warn_of_dry_friction(&linearizer, pose.friction.into(), quiet);

@@ -7,7 +7,7 @@ use crate::failure::{Failure, print, say, warn};
 use crate::progress::{STEPS, progress_bar, stop_flag};
 use crate::report::Report;
 use gyroflex_sim::error::ErrorKind;
-use gyroflex_sim::load::{self, Disk, FileSource, LoadOptions};
+use gyroflex_sim::load::{Disk, FileSource, LoadOptions};
 use gyroflex_sim::record::{CsvRecorder, McapRecorder, TeeRecorder};
 use gyroflex_sim::{ScenarioFile, Simulation};
 use std::ops::ControlFlow;
@@ -61,7 +61,7 @@ fn prepare(args: &Simulate, quiet: bool) -> Result<(Simulation, f64), Failure> {
         Some(path) => (&Disk, path),
         None => (&builtin::FILES, Path::new(builtin::SCENARIO)),
     };
-    let mut file = ScenarioFile::load(files, path)?;
+    let mut file = ScenarioFile::load_with(files, path, &args.set.overrides())?;
     if let Some(duration) = args.duration {
         file.scenario.duration = duration;
     }
@@ -70,15 +70,7 @@ fn prepare(args: &Simulate, quiet: bool) -> Result<(Simulation, f64), Failure> {
         options.model = Some(model.into());
         file.scenario.model = None;
     }
-    let robot_path = file.robot_path();
-    if !files.exists(&robot_path) {
-        let problem = format!("there is no file `{}`", robot_path.display());
-        return Err(file
-            .keys
-            .error("robot", problem, "give the path of a robot YAML or a URDF, relative to the scenario")
-            .into());
-    }
-    let robot = load::load_from(files, &robot_path, &options)?;
+    let robot = file.load_robot(files, &options)?;
     warn(&robot.warnings, quiet);
     let simulation = Simulation::new(&robot, &file)?;
     warn(simulation.warnings(), quiet);

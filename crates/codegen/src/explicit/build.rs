@@ -124,9 +124,6 @@ fn coordinates(robot: &Robot) -> Vec<Coordinate> {
     all
 }
 
-/// Smallest part of its diagonal that an entry of `K` or `D` has: what is left of integrals of eigenfunctions is rounding.
-const ROUNDING: f64 = 1e-12;
-
 /// `K` and `D` of the modes, by rows.
 fn modal(robot: &Robot) -> (Vec<f64>, Vec<f64>) {
     let Some(model) = robot.flexible else { return (Vec::new(), Vec::new()) };
@@ -142,6 +139,7 @@ fn modal(robot: &Robot) -> (Vec<f64>, Vec<f64>) {
     (without_rounding(&stiffness, n), without_rounding(&damping, n))
 }
 
+/// What is left of integrals over products of different eigenfunctions is rounding.
 fn without_rounding(matrix: &[f64], n: usize) -> Vec<f64> {
     let size = |j: usize, k: usize| (matrix[j * n + j] * matrix[k * n + k]).abs().sqrt();
     let entry = |(at, x): (usize, &f64)| if x.abs() > ROUNDING * size(at / n, at % n) { *x } else { 0.0 };

@@ -29,13 +29,16 @@ from .errors import (
     Error,
     FileError,
     FormatError,
+    MissingExtraError,
     ModelError,
     NotFiniteError,
     RobotWarning,
     ScenarioError,
     ShapeError,
 )
-from .simulation import ContactImpact, SimulationResult, simulate
+from .results import ContactImpact, SimulationResult, read_mcap
+from .simulation import simulate
+from .sweep import SweepResult, sweep
 
 __all__ = [
     "ArgumentError",
@@ -52,6 +55,7 @@ __all__ = [
     "GeneratedCode",
     "Impact",
     "Linearization",
+    "MissingExtraError",
     "Mode",
     "ModelError",
     "NotFiniteError",
@@ -60,6 +64,9 @@ __all__ = [
     "ScenarioError",
     "ShapeError",
     "SimulationResult",
+    "SweepResult",
     "__version__",
+    "read_mcap",
     "simulate",
+    "sweep",
 ]

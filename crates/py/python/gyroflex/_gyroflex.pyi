@@ -1,7 +1,7 @@
 """The compiled half of the package; `gyroflex` exports what users need of it."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal, TypeAlias, final
@@ -21,7 +21,10 @@ __all__ = [
     "Impact",
     "Linearization",
     "Mode",
+    "Record",
     "Robot",
+    "measure_scenario",
+    "read_log",
     "run_scenario",
     "__version__",
 ]
@@ -379,6 +382,7 @@ class Robot:
         floating: bool = False,
         model: _Model | None = None,
         mimic: Literal["refuse", "independent"] | None = None,
+        set: Mapping[str, object] | None = None,
     ) -> Robot:
         """Loads a robot YAML or a URDF."""
 
@@ -397,6 +401,14 @@ class Robot:
     @property
     def link_names(self) -> list[str]:
         """Names of all links of the URDF, those fused by fixed joints included."""
+
+    @property
+    def link_parents(self) -> dict[str, str | None]:
+        """Name of every link's parent in the URDF; `None` of the root."""
+
+    @property
+    def centers_of_mass(self) -> dict[str, list[float] | None]:
+        """Centre of mass of every link that moves by itself, in the link's axes [m]; `None` of one without mass."""
 
     @property
     def nq(self) -> int:
@@ -680,16 +692,25 @@ class Robot:
     ) -> GeneratedCode:
         """Straight-line code of this robot's equations, or the equations themselves, as `gyroflex codegen` writes them."""
 
+_Named: TypeAlias = tuple[dict[str, NDArray[np.float64]], dict[str, tuple[str, ...]], dict[str, tuple[str, ...]]]
+_Impacts: TypeAlias = tuple[tuple[float, float, tuple[str, ...], _Matrix, _Matrix, _Matrix], ...]
+
+@final
+class Record:
+    """All that a run recorded, poses of the links and files included: what a log is written of."""
+
+    def write_mcap(self, path: str | os.PathLike[str]) -> None:
+        """Writes the MCAP log that the run would have written."""
+
 def run_scenario(
     scenario: str | os.PathLike[str],
     log: str | os.PathLike[str] | None,
-) -> tuple[
-    dict[str, NDArray[np.float64]],
-    dict[str, tuple[str, ...]],
-    tuple[str, ...],
-    dict[str, str],
-    list[str],
-    tuple[tuple[float, float, tuple[str, ...], _Matrix, _Matrix, _Matrix], ...],
-    DivergedError | None,
-]:
-    """Arrays and units by name, names of the joints, metadata, warnings, impacts, and the error of a run that diverged."""
+    set: Mapping[str, object] | None,
+) -> tuple[_Named, tuple[str, ...], dict[str, str], list[str], _Impacts, Record, DivergedError | None]:
+    """Arrays, units and columns by name; names of the joints, metadata, warnings, impacts, record, and the error of a run that diverged."""
+
+def measure_scenario(scenario: str | os.PathLike[str], set: Mapping[str, object] | None) -> dict[str, float]:
+    """Numbers of a run by name, as `gyroflex sweep` writes them."""
+
+def read_log(path: str | os.PathLike[str]) -> tuple[_Named, tuple[str, ...], dict[str, str], _Impacts, bool]:
+    """Arrays, units and columns by name; names of the joints, metadata, impacts, and whether the log was finished."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .simulation import SimulationResult
+    from .results import SimulationResult
 
 __all__ = [
     "ArgumentError",
@@ -13,6 +13,7 @@ __all__ = [
     "Error",
     "FileError",
     "FormatError",
+    "MissingExtraError",
     "ModelError",
     "NotFiniteError",
     "RobotWarning",
@@ -87,6 +88,10 @@ class ShapeError(ArgumentError):
 
 class NotFiniteError(ArgumentError):
     """An array argument contains an infinity or NaN."""
+
+
+class MissingExtraError(Error, ImportError):
+    """A function needs a library that is not installed with the package by default."""
 
 
 class RobotWarning(UserWarning):

@@ -19,6 +19,7 @@ mod merge;
 mod meshes;
 mod mount;
 pub mod nearest;
+pub mod overrides;
 mod payload;
 mod pose;
 pub mod source;
@@ -34,6 +35,7 @@ pub use flexible::{
     OriginFile, ProfileFile, ShapeFile, TipFile,
 };
 pub use held::{AnchorFile, ConstraintFile, ContactFile, CouplingFile, Direction, DirectionsFile, DirectionsName};
+pub use overrides::Overrides;
 pub use payload::PayloadFile;
 pub use source::{Disk, Embedded, FileSource};
 
@@ -55,6 +57,8 @@ pub struct LoadOptions {
     pub gravity: Option<[f64; 3]>,
     /// What to do with joints that mimic another one, instead of the YAML's `mimic`.
     pub mimic: Option<Mimic>,
+    /// Keys of the robot's YAML with other values. A URDF by itself is taken for a YAML that only names it.
+    pub overrides: Overrides,
 }
 
 /// Loads a URDF or a robot YAML from disk.
@@ -71,11 +75,17 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Robot, Error> {
 /// Like [`load`].
 pub fn load_from(files: &dyn FileSource, path: &Path, options: &LoadOptions) -> Result<Robot, Error> {
     let text = source::read(files, path)?;
-    if is_urdf(path, &text) {
-        return assemble(&Urdf { text: &text, path, files: Some(files) }, None, options);
-    }
     let file = file_name(path);
-    let yaml: Yaml<RobotFile> = yaml::parse(&text, &file)?;
+    if is_urdf(path, &text) {
+        let urdf = Urdf { text: &text, path, files: Some(files) };
+        if options.overrides.is_empty() {
+            return assemble(&urdf, None, options);
+        }
+        let text = names_only(&file);
+        let yaml = yaml::parse_with(&text, &file, &options.overrides)?;
+        return assemble(&urdf, Some(&Drives { yaml: &yaml, text: &text, file: "robot.yaml".to_owned() }), options);
+    }
+    let yaml: Yaml<RobotFile> = yaml::parse_with(&text, &file, &options.overrides)?;
     let urdf = source::beside(path, &yaml.value.urdf);
     let urdf_text = source::read(files, &urdf).map_err(|e| Error {
         file: yaml.keys.locate("urdf"),
@@ -99,10 +109,23 @@ pub fn load_urdf_text(
     options: &LoadOptions,
 ) -> Result<Robot, Error> {
     let urdf = Urdf { text, path: Path::new(file_name), files: None };
-    let Some(drives) = drives else { return assemble(&urdf, None, options) };
+    let named;
+    let drives = match drives {
+        Some(drives) => drives,
+        None if options.overrides.is_empty() => return assemble(&urdf, None, options),
+        None => {
+            named = names_only(file_name);
+            &named
+        }
+    };
     let file = "robot.yaml".to_owned();
-    let yaml = yaml::parse(drives, &file)?;
+    let yaml = yaml::parse_with(drives, &file, &options.overrides)?;
     assemble(&urdf, Some(&Drives { yaml: &yaml, text: drives, file }), options)
+}
+
+/// A robot YAML that says nothing but its URDF.
+fn names_only(urdf: &str) -> String {
+    serde_json::json!({ "urdf": urdf }).to_string()
 }
 
 struct Urdf<'a> {

@@ -1,6 +1,7 @@
 //! Strict YAML: typed, within fixed budgets, every error with its line and the path of its key.
 
 use super::nearest::nearest;
+use super::overrides::{self, Overrides};
 use crate::error::{Error, ErrorKind};
 use serde::de::{self, DeserializeOwned, DeserializeSeed, MapAccess, SeqAccess, Visitor};
 use serde_saphyr::{NonFiniteFloatPolicy, Options, Spanned};
@@ -22,15 +23,23 @@ pub struct Keys {
     file: String,
     /// Path, line and column of every key, in the order of the file.
     entries: Vec<(String, u64, u64)>,
+    /// Keys with another value than the file's.
+    overridden: Vec<String>,
 }
 
 impl Keys {
-    /// The file with the line of a key, or of the nearest key around it that is written down.
+    /// The file with the line of a key, or of the nearest key around it that is written down; or that the key is overridden.
     pub fn locate(&self, path: &str) -> String {
+        if self.overridden.iter().any(|key| within(path, key)) {
+            return overrides::SOURCE.to_owned();
+        }
         let mut path = path;
         loop {
             if let Some((_, line, _)) = self.entries.iter().find(|(p, ..)| p == path) {
                 return format!("{}:{line}", self.file);
+            }
+            if self.overridden.iter().any(|key| within(key, path)) {
+                return overrides::SOURCE.to_owned();
             }
             match path.rfind(['.', '[']) {
                 Some(end) => path = &path[..end],
@@ -39,9 +48,9 @@ impl Keys {
         }
     }
 
-    /// Whether the file has this key.
+    /// Whether the file has this key, or an override sets it or something in it.
     pub fn has(&self, path: &str) -> bool {
-        self.entries.iter().any(|(p, ..)| p == path)
+        self.entries.iter().any(|(p, ..)| p == path) || self.overridden.iter().any(|key| within(key, path))
     }
 
     /// An error about the value of a key.
@@ -62,13 +71,18 @@ impl Keys {
     }
 }
 
+/// Whether a key is another one or lies in it.
+fn within(key: &str, outer: &str) -> bool {
+    key.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
 /// Reads one YAML document that must be a mapping. Numbers that are not finite, doubled and unknown keys (where the type
 /// denies them, as all of ours do), deep nesting and swelling aliases are errors.
 ///
 /// # Errors
 /// [`ErrorKind::Yaml`] with the line, the path of the key, and for an unknown key the nearest known one.
 pub fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<Yaml<T>, Error> {
-    let keys = RefCell::new(Keys { file: file.to_owned(), entries: Vec::new() });
+    let keys = RefCell::new(Keys { file: file.to_owned(), ..Keys::default() });
     // First without types: syntax, budgets, finite numbers, and the places of all keys.
     let walk = Walk { keys: &keys, path: String::new() };
     let walked = serde_saphyr::with_deserializer_from_str_with_options(text, options(), |d| walk.deserialize(d));
@@ -76,6 +90,28 @@ pub fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<Yaml<T>, Err
     walked.map_err(|e| explain(&e, &keys_so_far()))?;
     let value = serde_saphyr::from_str_with_options(text, options()).map_err(|e| explain(&e, &keys_so_far()))?;
     Ok(Yaml { value, keys: keys.into_inner() })
+}
+
+/// [`parse`] of a file of which some keys have other values.
+///
+/// # Errors
+/// Like [`parse`]; what is wrong with an overridden key is said to be in an `override`.
+pub fn parse_with<T: DeserializeOwned>(text: &str, file: &str, overrides: &Overrides) -> Result<Yaml<T>, Error> {
+    if overrides.is_empty() {
+        return parse(text, file);
+    }
+    let Yaml { value: mut contents, mut keys } = parse::<serde_json::Value>(text, file)?;
+    overrides.apply(&mut contents)?;
+    keys.overridden = overrides.iter().map(|(key, _)| key.to_owned()).collect();
+    // JSON is YAML, with lines of its own, which mean nothing to the user.
+    let changed = serde_json::to_string_pretty(&contents)?;
+    let yaml = parse(&changed, file).map_err(|e| Error { file: keys.locate(&e.element), ..e })?;
+    Ok(Yaml { value: yaml.value, keys })
+}
+
+/// A value by itself, such as `1.0e4`, `reduced` or `[0, 0, 0]`.
+pub(super) fn value(text: &str) -> Result<serde_json::Value, Error> {
+    parse::<serde_json::Value>(&format!("value: {text}"), overrides::SOURCE).map(|yaml| yaml.value["value"].clone())
 }
 
 /// Budgets far above any file a human writes, far below what hurts.

@@ -5,11 +5,12 @@ use super::proto::{self, State};
 use super::{Impact, RunInfo, file};
 use crate::error::Error;
 use ::mcap::io::MessageReader;
+use ::mcap::read::LinearReader;
+use ::mcap::records::Record;
 use ::mcap::sans_io::LinearReaderOptions;
 use ::mcap::{McapError, Message};
 use prost::Message as _;
-use std::fs::File;
-use std::io::BufReader;
+use std::io::Cursor;
 use std::path::Path;
 
 /// The states of a log.
@@ -19,6 +20,8 @@ pub struct StateLog {
     pub table: Table,
     /// All of `/gyroflex/impacts`, by the contacts in the order of the table.
     pub impacts: Vec<Impact>,
+    /// Parameters and versions of the run.
+    pub metadata: Vec<(String, String)>,
     /// Whether the log was finished; else its run was killed and the table holds what reached the file.
     pub complete: bool,
 }
@@ -29,12 +32,12 @@ pub struct StateLog {
 /// When the file cannot be read, is no MCAP log, or holds no states of ours. A log cut short is no error.
 pub fn read_states(path: &Path) -> Result<StateLog, Error> {
     let name = path.display().to_string();
-    let source = File::open(path).map_err(|e| file::read_error(&name, &e))?;
+    let bytes = std::fs::read(path).map_err(|e| file::read_error(&name, &e))?;
     // The end magic is not skipped: reaching it is how a finished log is known.
     let options = LinearReaderOptions::default().with_validate_chunk_crcs(true);
-    let mut log = StateLog { complete: true, ..StateLog::default() };
+    let mut log = StateLog { complete: true, metadata: metadata(&bytes), ..StateLog::default() };
     let mut run = None;
-    for message in MessageReader::new_with_options(BufReader::new(source), options) {
+    for message in MessageReader::new_with_options(Cursor::new(&bytes), options) {
         match message {
             Ok(message) if message.channel.topic == "/gyroflex/state" => {
                 let state = decode(&name, &message)?;
@@ -66,6 +69,16 @@ pub fn read_states(path: &Path) -> Result<StateLog, Error> {
         return Err(not_ours(&name, "holds no message on /gyroflex/state".to_owned()));
     }
     Ok(log)
+}
+
+/// What the recorder wrote ahead of the first sample, so that a log cut short has it too.
+fn metadata(log: &[u8]) -> Vec<(String, String)> {
+    let records = LinearReader::new(log).into_iter().flatten();
+    let found = records.map_while(Result::ok).find_map(|record| match record {
+        Record::Metadata(m) if m.name == "gyroflex" => Some(m.metadata),
+        _ => None,
+    });
+    found.into_iter().flatten().collect()
 }
 
 fn decode(name: &str, message: &Message<'_>) -> Result<State, Error> {

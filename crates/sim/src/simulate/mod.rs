@@ -249,6 +249,9 @@ impl Simulation {
                 );
             }
         }
+        for (key, value) in self.file.overrides.iter() {
+            add(&format!("override.{key}"), value.to_string());
+        }
         add("log_rate", scenario.log.rate.to_string());
         if scenario.shaper.is_some() {
             let impulses = self.references.shaper().impulses().iter();

@@ -1,0 +1,342 @@
+"""Sweeps: one scenario over many values of its keys, one table of numbers."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import itertools
+import json
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _gyroflex
+from ._extras import extra
+from .errors import ArgumentError, DivergedError, FileError, ModelError, ScenarioError
+from .results import SimulationResult
+from .simulation import attempt
+
+if TYPE_CHECKING:
+    import pandas
+    from numpy.typing import NDArray
+
+__all__ = ["SweepResult", "sweep"]
+
+Measure = Callable[[SimulationResult], Mapping[str, Any]]
+Values = Mapping[str, object]
+
+
+class SweepResult(Mapping[str, "NDArray[Any]"]):
+    """The table of a sweep: arrays of one entry a run, by name.
+
+    The swept keys come first, then what was measured (NaN or ``None`` for a run that failed), then ``error``, the reason why a run
+    has no measures, empty for all others. Without ``measure`` these are, of each joint, ``rms_tracking_error.<joint>`` and
+    ``peak_tracking_error.<joint>`` [rad or m], ``peak_torque.<joint>`` [N m or N, link side], ``saturation.<joint>``, the share of
+    ticks at the torque limit [-]; and ``fastest_mode`` [Hz], ``energy_drift`` [-], ``constraint_drift`` [m or rad], ``steps``.
+    """
+
+    __slots__ = ("_columns", "swept")
+
+    def __init__(self, columns: Mapping[str, NDArray[Any]], swept: tuple[str, ...]) -> None:
+        self._columns = dict(columns)
+        self.swept = swept
+        """The keys that were swept."""
+
+    @property
+    def failed(self) -> NDArray[np.bool_]:
+        """Which runs have an error instead of measures."""
+        return np.array([bool(error) for error in self["error"]], dtype=bool)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __repr__(self) -> str:
+        return f"<SweepResult: {self['error'].size} runs over {', '.join(self.swept)}, {self.failed.sum()} of them failed>"
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The table as a ``pandas.DataFrame``."""
+        frame: pandas.DataFrame = extra("pandas", "pandas").DataFrame(self._columns)
+        return frame
+
+
+def sweep(
+    scenario: str | os.PathLike[str],
+    values: Mapping[str, Iterable[object]] | Iterable[Values],
+    *,
+    n_jobs: int = -1,
+    measure: Measure | None = None,
+    output: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    client: Any = None,
+    progress: bool = True,
+) -> SweepResult:
+    """Runs a scenario over many values of its keys and returns one table. Rows are in the order of the values, and the table is the
+    same whichever way it was made.
+
+    Parameters
+    ----------
+    scenario
+        The scenario's file. Workers of a cluster must see it under the same path.
+    values
+        The values of each key, of which all combinations are run, the last key changing fastest; or the runs themselves, a mapping
+        from keys to values each. Keys are those of ``simulate(..., set=...)``.
+    n_jobs
+        How many runs at once on this machine; -1 for as many as there are cores.
+    measure
+        What to write down of a run: a function of its ``SimulationResult`` that returns numbers or texts by name, the same names for
+        every run. Default: the numbers of `SweepResult`.
+    output
+        A ``.parquet`` (needs ``gyroflex[sweep]``) or ``.csv`` file for the table. Until all runs are done, each is kept in
+        ``<output>.journal`` as it ends, and the same call goes on from there after an interruption.
+    overwrite
+        Whether to write over an ``output`` that is complete.
+    client
+        A ``distributed.Client``: runs go to the workers of its Dask cluster (``gyroflex[dask]``); those of a worker that dies go to
+        another one.
+    progress
+        Whether to show a bar, if ``tqdm`` is installed.
+
+    Raises
+    ------
+    FormatError, FileError
+        What is wrong with a file or a key, which would meet every run. A run that diverges or is refused is a row with its ``error``.
+    """
+    runs, swept = _runs(values)
+    target = None if output is None else Path(output)
+    if target is not None:
+        _check_output(target, overwrite)
+    run = _Run(os.path.abspath(scenario), measure)
+    journal = _Journal(target, [str(scenario), swept, runs])
+    rows = journal.rows
+    with closing(journal):
+        if rows:
+            _check_last(run, runs, rows, journal.path)
+        todo = {i: runs[i] for i in range(len(runs)) if i not in rows}
+        ended = _on_threads(run, todo, n_jobs) if client is None else _on_cluster(run, todo, client)
+        with closing(ended), _bar(progress, len(runs), len(rows)) as bar:
+            for i, row in ended:
+                rows[i] = row
+                journal.add(i, row)
+                bar.update()
+    columns = _columns(swept, runs, [rows[i] for i in range(len(runs))])
+    if target is not None:
+        _write(target, columns)
+        journal.remove()
+    return SweepResult(columns, swept)
+
+
+class _Run:
+    """A run by its values; an object that can be sent to another process."""
+
+    def __init__(self, scenario: str, measure: Measure | None) -> None:
+        self.scenario = scenario
+        self.measure = measure
+
+    def __call__(self, values: Values) -> dict[str, Any]:
+        """What was measured by name, or ``error``. Numbers and texts only, as they come back from a journal."""
+        try:
+            if self.measure is None:
+                row: Mapping[str, Any] = _gyroflex.measure_scenario(self.scenario, values)
+            else:
+                result, error = attempt(self.scenario, None, values)
+                if error is not None:
+                    raise error
+                row = self.measure(result)
+        except (DivergedError, ModelError, ScenarioError) as error:
+            return {"error": str(error).splitlines()[0]}
+        return {str(name): _plain(value) for name, value in row.items()}
+
+
+def _plain(value: Any) -> Any:
+    """A NumPy value as Python's own."""
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _runs(values: Mapping[str, Iterable[object]] | Iterable[Values]) -> tuple[list[dict[str, Any]], tuple[str, ...]]:
+    """The values of every run, and the keys."""
+    if isinstance(values, Mapping):
+        swept = tuple(values)
+        several = [[_plain(value) for value in values[key]] for key in swept]
+        runs = [dict(zip(swept, combination, strict=True)) for combination in itertools.product(*several)]
+    else:
+        runs = [{key: _plain(value) for key, value in run.items()} for run in values]
+        swept = tuple(runs[0]) if runs else ()
+        if any(tuple(run) != swept for run in runs):
+            raise ArgumentError("not all runs have the same keys", "argument `values`", remedy="give every run every key, in the same order")
+    if not runs:
+        raise ArgumentError("there is nothing to run", "argument `values`", remedy="give each key at least one value")
+    return runs, swept
+
+
+def _on_threads(run: _Run, todo: Mapping[int, Values], n_jobs: int) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Runs with their numbers as they end; the interpreter is released while they run."""
+    if n_jobs == 0 or n_jobs < -1:
+        raise ArgumentError(f"{n_jobs} is not a number of jobs", "argument `n_jobs`", remedy="give a number above zero, or -1 for all cores")
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    pool = ThreadPoolExecutor(cores if n_jobs == -1 else n_jobs)
+    try:
+        number = {pool.submit(run, values): i for i, values in todo.items()}
+        for future in as_completed(number):
+            yield number[future], future.result()
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _on_cluster(run: _Run, todo: Mapping[int, Values], client: Any) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Runs with their numbers as they end. A few for every thread of the cluster are on their way, however many there are in all."""
+    completed = extra("distributed", "dask").as_completed
+
+    waiting = iter(todo.items())
+    number: dict[str, int] = {}
+
+    def submit(count: int) -> list[Any]:
+        futures = []
+        for i, values in itertools.islice(waiting, count):
+            future = client.submit(run, values, pure=False)
+            number[future.key] = i
+            futures.append(future)
+        return futures
+
+    ahead = max(8, 4 * sum(client.nthreads().values()))
+    under_way = completed(submit(ahead))
+    try:
+        for future in under_way:
+            row = future.result()
+            yield number.pop(future.key), row
+            for another in submit(1):
+                under_way.add(another)
+    finally:
+        client.cancel([future for future in under_way.futures])
+
+
+class _Journal:
+    """The runs of a sweep that have ended, one a line of JSON, in any order: what an interrupted sweep leaves."""
+
+    def __init__(self, target: Path | None, what: Sequence[Any]) -> None:
+        self.path = None if target is None else target.with_name(target.name + ".journal")
+        self.rows: dict[int, dict[str, Any]] = {}
+        self._file = None
+        if self.path is None:
+            return
+        digest = hashlib.sha256(json.dumps(what).encode()).hexdigest()
+        head = json.dumps({"gyroflex sweep": digest}) + "\n"
+        text = self.path.read_text(encoding="utf-8") if self.path.exists() else ""
+        # A line that was being written when the program or the machine stopped.
+        kept = text[: text.rfind("\n") + 1]
+        if kept and not kept.startswith(head):
+            raise FileError("it is of a sweep over other values", "output", str(self.path), "name another output, or remove this file")
+        for line in kept.splitlines()[1:]:
+            i, row = json.loads(line)
+            self.rows[i] = row
+        self._file = self.path.open("w", encoding="utf-8")
+        self._file.write(kept or head)
+        self._file.flush()
+
+    def add(self, i: int, row: Mapping[str, Any]) -> None:
+        """Keeps a run, one write a line."""
+        if self._file is not None:
+            self._file.write(json.dumps([i, row]) + "\n")
+            self._file.flush()
+
+    def close(self) -> None:
+        if self._file is not None:
+            self._file.close()
+
+    def remove(self) -> None:
+        """The table is complete."""
+        if self.path is not None:
+            self.path.unlink()
+
+
+def _check_output(target: Path, overwrite: bool) -> None:
+    if target.suffix not in (".parquet", ".csv"):
+        raise ArgumentError(f"`{target.name}` is no file for a table", "argument `output`", remedy="end it in .parquet or .csv")
+    if target.exists() and not overwrite:
+        raise FileError("it exists already", "output", str(target), "name another file, remove this one, or say `overwrite=True`")
+    if target.suffix == ".parquet":
+        extra("pyarrow.parquet", "sweep")  # before hours of runs, not after
+
+
+def _check_last(run: _Run, runs: Sequence[Values], rows: Mapping[int, dict[str, Any]], path: Path | None) -> None:
+    """Refuses to go on if a run that was kept comes out otherwise now."""
+    last = next(reversed(rows))
+    if json.dumps(run(runs[last])) != json.dumps(rows[last]):
+        problem = "a run that it has comes out otherwise now: the scenario, the robot, the measure or the program have changed since"
+        raise FileError(problem, "output", str(path), "name another output, or remove this file")
+
+
+def _columns(swept: tuple[str, ...], runs: Sequence[Values], rows: Sequence[Mapping[str, Any]]) -> dict[str, NDArray[Any]]:
+    """Rows as columns: the keys, the measures, the errors."""
+    measured = next((tuple(row) for row in rows if "error" not in row), ())
+    for i, row in enumerate(rows):
+        if "error" not in row and tuple(row) != measured:
+            raise ArgumentError(f"run {i} measured other things than the runs before it: {', '.join(row)}", "argument `measure`", remedy="measure the same for every run")
+    columns = {key: _array([run[key] for run in runs]) for key in swept}
+    columns.update({name: _array([row.get(name) for row in rows]) for name in measured})
+    columns["error"] = np.array([row.get("error", "") for row in rows], dtype=object)
+    return columns
+
+
+def _array(values: list[Any]) -> NDArray[Any]:
+    """Numbers and truth values as such, with NaN for what is missing; else texts, of lists and mappings as JSON."""
+    given = [value for value in values if value is not None]
+    if given and len(given) == len(values) and all(isinstance(value, bool) for value in given):
+        return np.array(values, dtype=bool)
+    if given and all(isinstance(value, int | float) for value in given):
+        return np.array([np.nan if value is None else float(value) for value in values])
+    texts = [value if value is None or isinstance(value, str) else json.dumps(value) for value in values]
+    array = np.empty(len(texts), dtype=object)
+    array[:] = texts
+    return array
+
+
+def _write(target: Path, columns: Mapping[str, NDArray[Any]]) -> None:
+    """Writes the table beside its place first: a file that is there is whole."""
+    part = target.with_name(target.name + ".part")
+    if target.suffix == ".parquet":
+        pyarrow, parquet = extra("pyarrow", "sweep"), extra("pyarrow.parquet", "sweep")
+        parquet.write_table(pyarrow.table({name: pyarrow.array(column) for name, column in columns.items()}), part)
+    else:
+        with part.open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(columns)
+            writer.writerows(zip(*(["" if _missing(x) else x for x in column.tolist()] for column in columns.values()), strict=True))
+    part.replace(target)
+
+
+def _missing(value: Any) -> bool:
+    return value is None or value != value
+
+
+class _NoBar:
+    def __enter__(self) -> _NoBar:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def update(self) -> None:
+        pass
+
+
+def _bar(shown: bool, total: int, initial: int) -> Any:
+    """A bar of tqdm, or none."""
+    try:
+        if shown:
+            from tqdm import tqdm
+
+            return tqdm(total=total, initial=initial, unit="run")
+    except ImportError:
+        pass
+    return _NoBar()
