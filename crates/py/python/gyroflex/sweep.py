@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import importlib.util
 import itertools
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import uuid
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing
 from pathlib import Path
@@ -29,6 +31,7 @@ __all__ = ["SweepResult", "sweep"]
 
 Measure = Callable[[SimulationResult], Mapping[str, Any]]
 Values = Mapping[str, object]
+Ended = Generator[tuple[int, dict[str, Any]], None, None]
 
 
 class SweepResult(Mapping[str, "NDArray[Any]"]):
@@ -117,7 +120,7 @@ def sweep(
     if target is not None:
         _check_output(target, overwrite)
     run = _Run(os.path.abspath(scenario), measure)
-    journal = _Journal(target, [str(scenario), swept, runs])
+    journal = _Journal(target, [swept, runs])
     rows = journal.rows
     with closing(journal):
         if rows:
@@ -163,6 +166,11 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
+def _json(value: Any) -> str:
+    """JSON, of anything."""
+    return json.dumps(value, default=lambda x: x.tolist() if hasattr(x, "tolist") else repr(x))
+
+
 def _runs(values: Mapping[str, Iterable[object]] | Iterable[Values]) -> tuple[list[dict[str, Any]], tuple[str, ...]]:
     """The values of every run, and the keys."""
     if isinstance(values, Mapping):
@@ -179,7 +187,7 @@ def _runs(values: Mapping[str, Iterable[object]] | Iterable[Values]) -> tuple[li
     return runs, swept
 
 
-def _on_threads(run: _Run, todo: Mapping[int, Values], n_jobs: int) -> Iterator[tuple[int, dict[str, Any]]]:
+def _on_threads(run: _Run, todo: Mapping[int, Values], n_jobs: int) -> Ended:
     """Runs with their numbers as they end; the interpreter is released while they run."""
     if n_jobs == 0 or n_jobs < -1:
         raise ArgumentError(f"{n_jobs} is not a number of jobs", "argument `n_jobs`", remedy="give a number above zero, or -1 for all cores")
@@ -193,31 +201,24 @@ def _on_threads(run: _Run, todo: Mapping[int, Values], n_jobs: int) -> Iterator[
         pool.shutdown(cancel_futures=True)
 
 
-def _on_cluster(run: _Run, todo: Mapping[int, Values], client: Any) -> Iterator[tuple[int, dict[str, Any]]]:
+def _on_cluster(run: _Run, todo: Mapping[int, Values], client: Any) -> Ended:
     """Runs with their numbers as they end. A few for every thread of the cluster are on their way, however many there are in all."""
     completed = extra("distributed", "dask").as_completed
 
-    waiting = iter(todo.items())
-    number: dict[str, int] = {}
+    waiting, name = iter(todo.items()), f"sweep-{uuid.uuid4().hex}"
 
     def submit(count: int) -> list[Any]:
-        futures = []
-        for i, values in itertools.islice(waiting, count):
-            future = client.submit(run, values, pure=False)
-            number[future.key] = i
-            futures.append(future)
-        return futures
+        some = itertools.islice(waiting, count)
+        return [client.submit(run, values, key=f"{name}-{i}") for i, values in some]
 
-    ahead = max(8, 4 * sum(client.nthreads().values()))
-    under_way = completed(submit(ahead))
+    under_way = completed(submit(max(8, 4 * sum(client.nthreads().values()))))
     try:
         for future in under_way:
-            row = future.result()
-            yield number.pop(future.key), row
+            yield int(future.key.removeprefix(f"{name}-")), future.result()
             for another in submit(1):
                 under_way.add(another)
     finally:
-        client.cancel([future for future in under_way.futures])
+        client.cancel(list(under_way.futures))
 
 
 class _Journal:
@@ -229,7 +230,7 @@ class _Journal:
         self._file = None
         if self.path is None:
             return
-        digest = hashlib.sha256(json.dumps(what).encode()).hexdigest()
+        digest = hashlib.sha256(_json(what).encode()).hexdigest()
         head = json.dumps({"gyroflex sweep": digest}) + "\n"
         text = self.path.read_text(encoding="utf-8") if self.path.exists() else ""
         # A line that was being written when the program or the machine stopped.
@@ -246,7 +247,7 @@ class _Journal:
     def add(self, i: int, row: Mapping[str, Any]) -> None:
         """Keeps a run, one write a line."""
         if self._file is not None:
-            self._file.write(json.dumps([i, row]) + "\n")
+            self._file.write(_json([i, row]) + "\n")
             self._file.flush()
 
     def close(self) -> None:
@@ -268,10 +269,10 @@ def _check_output(target: Path, overwrite: bool) -> None:
         extra("pyarrow.parquet", "sweep")  # before hours of runs, not after
 
 
-def _check_last(run: _Run, runs: Sequence[Values], rows: Mapping[int, dict[str, Any]], path: Path | None) -> None:
+def _check_last(run: _Run, runs: Sequence[Values], rows: dict[int, dict[str, Any]], path: Path | None) -> None:
     """Refuses to go on if a run that was kept comes out otherwise now."""
     last = next(reversed(rows))
-    if json.dumps(run(runs[last])) != json.dumps(rows[last]):
+    if _json(run(runs[last])) != _json(rows[last]):
         problem = "a run that it has comes out otherwise now: the scenario, the robot, the measure or the program have changed since"
         raise FileError(problem, "output", str(path), "name another output, or remove this file")
 
@@ -281,7 +282,8 @@ def _columns(swept: tuple[str, ...], runs: Sequence[Values], rows: Sequence[Mapp
     measured = next((tuple(row) for row in rows if "error" not in row), ())
     for i, row in enumerate(rows):
         if "error" not in row and tuple(row) != measured:
-            raise ArgumentError(f"run {i} measured other things than the runs before it: {', '.join(row)}", "argument `measure`", remedy="measure the same for every run")
+            problem = f"run {i} measured other things than the runs before it: {', '.join(row)}"
+            raise ArgumentError(problem, "argument `measure`", remedy="measure the same for every run")
     columns = {key: _array([run[key] for run in runs]) for key in swept}
     columns.update({name: _array([row.get(name) for row in rows]) for name in measured})
     columns["error"] = np.array([row.get("error", "") for row in rows], dtype=object)
@@ -295,7 +297,7 @@ def _array(values: list[Any]) -> NDArray[Any]:
         return np.array(values, dtype=bool)
     if given and all(isinstance(value, int | float) for value in given):
         return np.array([np.nan if value is None else float(value) for value in values])
-    texts = [value if value is None or isinstance(value, str) else json.dumps(value) for value in values]
+    texts = [value if value is None or isinstance(value, str) else _json(value) for value in values]
     array = np.empty(len(texts), dtype=object)
     array[:] = texts
     return array
@@ -332,11 +334,6 @@ class _NoBar:
 
 def _bar(shown: bool, total: int, initial: int) -> Any:
     """A bar of tqdm, or none."""
-    try:
-        if shown:
-            from tqdm import tqdm
-
-            return tqdm(total=total, initial=initial, unit="run")
-    except ImportError:
-        pass
+    if shown and importlib.util.find_spec("tqdm"):
+        return extra("tqdm", "sweep").tqdm(total=total, initial=initial, unit="run")
     return _NoBar()
