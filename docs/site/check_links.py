@@ -45,6 +45,8 @@ def broken(path: Path, site: Path) -> Iterator[str]:
         if target.is_dir():
             target /= "index.html"
         places = {parts.fragment, unquote(parts.fragment)}
+        if target.is_relative_to(site / "rust" / "trait.impl"):
+            continue  # lists of other crates' implementations, which rustdoc asks for even where there are none
         if parts.path.startswith("/") or not target.is_relative_to(site) or not target.is_file():
             yield link
         elif parts.fragment and target.suffix == ".html" and not (page(target).places & places or is_line_of_source(target, site)):
