@@ -196,6 +196,7 @@ class GeneratedCode:
     def module(self) -> ModuleType:
         """The functions as a Python module that is ready to use; of code in Python only."""
 
+@final
 class ElasticInverse:
     """What the motors must do for a motion of the links."""
 
