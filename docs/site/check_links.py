@@ -44,16 +44,18 @@ def broken(path: Path, site: Path) -> Iterator[str]:
         target = path if not parts.path else (path.parent / unquote(parts.path)).resolve()
         if target.is_dir():
             target /= "index.html"
-        place = unquote(parts.fragment)
+        places = {parts.fragment, unquote(parts.fragment)}
+        if target.is_relative_to(site / "rust" / "trait.impl"):
+            continue  # lists of other crates' implementations, which rustdoc asks for even where there are none
         if parts.path.startswith("/") or not target.is_relative_to(site) or not target.is_file():
             yield link
-        elif place and target.suffix == ".html" and not rustdoc_makes(place, target, site) and place not in page(target).places:
+        elif parts.fragment and target.suffix == ".html" and not (page(target).places & places or is_line_of_source(target, site)):
             yield link
 
 
-def rustdoc_makes(place: str, target: Path, site: Path) -> bool:
+def is_line_of_source(target: Path, site: Path) -> bool:
     """Lines of rustdoc's source pages get their places when they are shown."""
-    return target.is_relative_to(site / "rust" / "src") and place.replace("-", "").isdigit()
+    return target.is_relative_to(site / "rust" / "src")
 
 
 def main() -> int:

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 import inspect
-from functools import reduce
 from typing import Any
 
 import griffe
 from gyroflex import _gyroflex
 
-COMPILED = "gyroflex._gyroflex."
-
 
 class CompiledDocstrings(griffe.Extension):
-    """Takes the docstring of the running module wherever it has one."""
+    """Takes the docstrings of the compiled classes where they are more than the first line that the stubs have."""
 
     def on_package(self, *, pkg: griffe.Module, **_: Any) -> None:
-        pending: list[griffe.Object | griffe.Alias] = list(pkg["_gyroflex"].members.values())
-        while pending:
-            described = pending.pop()
-            if described.is_alias:
-                continue
-            pending += described.members.values()
-            running = reduce(lambda owner, name: getattr(owner, name, None), described.path.removeprefix(COMPILED).split("."), _gyroflex)
-            text = inspect.getdoc(running) if running is not None else None
-            if text and not described.is_attribute or text and described.path.count(".") > 2:
-                described.docstring = griffe.Docstring(text, parent=described, parser="numpy")
+        for name in _gyroflex.__all__:
+            running, described = getattr(_gyroflex, name), pkg["_gyroflex"][name]
+            described = described.final_target if described.is_alias else described
+            explain(described, running)
+            for member in described.members.values():
+                explain(member, getattr(running, member.name, None))
+
+
+def explain(described: Any, running: object) -> None:
+    text = inspect.getdoc(running)
+    if text and "\n" in text:
+        described.docstring = griffe.Docstring(text, parent=described, parser="numpy")

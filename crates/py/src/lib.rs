@@ -3,6 +3,7 @@
 mod analyze;
 mod arguments;
 mod arrays;
+mod codegen;
 mod constraint;
 mod derivatives;
 mod errors;
@@ -25,6 +26,8 @@ use pyo3::prelude::*;
 mod _gyroflex {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::codegen::PyGeneratedCode;
     #[pymodule_export]
     use crate::constraint::{PyConstrainedMotion, PyConstrainedTorques, PyConstraint, PyImpact};
     #[pymodule_export]

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from conftest import PROJECT
 from gyroflex import plots
+from gyroflex.plots.sticks import sticks_at
 
 ROBOTS = PROJECT / "robots"
 SCENARIO = """
@@ -122,6 +123,12 @@ def test_an_animation_is_of_its_own_robot(result: gyroflex.SimulationResult) -> 
         plots.animate(gyroflex.Robot.load(ROBOTS / "iiwa14" / "robot.yaml"), result)
 
 
+def test_times_that_a_run_has_not_are_told(arm: gyroflex.Robot, result: gyroflex.SimulationResult) -> None:
+    for times in ((0.0, 1.0), (-0.1, 0.1), (0.2, 0.1)):
+        with pytest.raises(gyroflex.ArgumentError, match="from 0 s to 0.2 s"):
+            plots.animate(arm, result, times=times)
+
+
 # A published inertia of the PUMA is no body's.
 @pytest.mark.filterwarnings("ignore:.*triangle inequality")
 @pytest.mark.parametrize("robot", sorted(path.parent.name for path in ROBOTS.glob("*/robot.yaml")))
@@ -130,7 +137,7 @@ def test_sticks_meet_at_the_origins_of_links(robot: str) -> None:
     q = np.linspace(0.1, 0.4, loaded.nq)
     if loaded.floating:
         q[3:7] = [0.0, 0.0, 0.6, 0.8]
-    sticks = plots._sticks(loaded, q[None])[0]
+    sticks = sticks_at(loaded, q[None])[0]
     assert len(sticks) >= len(loaded.joint_names)
     origins = np.array([loaded.placement(link, q)[:3, 3] for link in loaded.link_names])
     for start, _ in sticks:

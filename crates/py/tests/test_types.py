@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import matplotlib
+import matplotlib.pyplot as plt
 import pytest
 import typed_example
 
@@ -21,6 +23,10 @@ def test_stubs_fit_the_module() -> None:
     run("mypy.stubtest", "gyroflex")
 
 
+def test_package_passes_the_strict_check() -> None:
+    run("mypy", "--strict", "-p", "gyroflex")
+
+
 def test_example_passes_the_strict_check() -> None:
     run("mypy", "--strict", HERE / "typed_example.py")
 
@@ -29,3 +35,14 @@ def test_example_runs(arm_file: Path, capsys: pytest.CaptureFixture[str]) -> Non
     typed_example.main(arm_file)
     lines = capsys.readouterr().out.splitlines()
     assert [line.split(":")[0] for line in lines[:3]] == ["shoulder", "elbow", "extend"]
+
+
+def test_example_of_pictures_runs(arm_file: Path, tmp_path: Path) -> None:
+    scenario = arm_file.parent / "look.yaml"
+    scenario.write_text("{robot: robot.yaml, duration: 0.2, integrator: {method: rk4, step: 1.0e-4}, log: {rate: 500}}")
+    matplotlib.use("Agg")
+    try:
+        typed_example.look(scenario, tmp_path)
+    finally:
+        plt.close("all")
+    assert {path.name for path in tmp_path.iterdir()} == {"run.mcap", "run.png", "run.gif"}

@@ -6,7 +6,9 @@ import sys
 from pathlib import Path
 
 import gyroflex
+import matplotlib.pyplot as plt
 import numpy as np
+from gyroflex import plots
 from numpy.typing import NDArray
 
 
@@ -33,6 +35,20 @@ def main(path: Path) -> None:
         robot.placement("no such link", q)
     except gyroflex.ArgumentError as error:
         print(error.remedy)
+
+
+def look(scenario: Path, folder: Path) -> None:
+    """Runs a scenario, keeps its log, table, curves and film, and reads the log again."""
+    run = gyroflex.simulate(scenario)
+    run.to_mcap(folder / "run.mcap")
+    again = gyroflex.read_mcap(folder / "run.mcap")
+    print(again, again.to_pandas().shape)
+    robot = gyroflex.Robot.load(scenario.parent / "robot.yaml")
+    run.plot(["position", "energy"], joints=run.joint_names[:1])
+    plt.savefig(folder / "run.png")
+    plots.frequency_response(robot.frequency_response(robot.joint_names[0]), labels=["first"])
+    plots.significance_map(robot, *robot.joint_names[:2], points=3).set_title("significance")
+    plots.animate(robot, run, folder / "run.gif", fps=5)
 
 
 if __name__ == "__main__":

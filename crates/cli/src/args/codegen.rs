@@ -49,7 +49,7 @@ pub struct Codegen {
     /// Cut every function into so many parts for as many processors (Rust, with the crate rayon)
     #[arg(long, value_name = "N")]
     pub split: Option<usize>,
-    /// The folder to write to
+    /// The folder to write to, made if it does not exist
     #[arg(short, long, value_name = "FOLDER", default_value = ".")]
     pub output: PathBuf,
     /// Name of the files without their extensions [default: the robot's]

@@ -33,11 +33,11 @@ pub fn run(args: &Codegen, quiet: bool) -> Result<(), Failure> {
     bar.finish_and_clear();
     let Some(generated) = generated? else { return Err(Failure::Interrupted) };
     for file in &generated.files {
-        output::write(&args.output.join(&file.name), file.text.as_bytes(), &args.robot)?;
+        output::spare_the_robot(&args.output.join(&file.name), &args.robot)?;
     }
+    let written = generated.write(&args.output)?;
     if !quiet {
-        let names: Vec<String> =
-            generated.files.iter().map(|f| args.output.join(&f.name).display().to_string()).collect();
+        let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
         say(&format!("written: {}", names.join(", ")));
     }
     if args.json { print(&json::text(&generated.report.json())) } else { print(&generated.report.text()) }

@@ -136,7 +136,14 @@ fn modal(robot: &Robot) -> (Vec<f64>, Vec<f64>) {
             (stiffness[at], damping[at]) = (pair.stiffness, pair.damping);
         }
     }
-    (stiffness, damping)
+    (without_rounding(&stiffness, n), without_rounding(&damping, n))
+}
+
+/// What is left of integrals over products of different eigenfunctions is rounding.
+fn without_rounding(matrix: &[f64], n: usize) -> Vec<f64> {
+    let size = |j: usize, k: usize| (matrix[j * n + j] * matrix[k * n + k]).abs().sqrt();
+    let entry = |(at, x): (usize, &f64)| if x.abs() > ROUNDING * size(at / n, at % n) { *x } else { 0.0 };
+    matrix.iter().enumerate().map(entry).collect()
 }
 
 impl Sum {

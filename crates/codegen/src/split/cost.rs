@@ -26,7 +26,7 @@ impl Prediction {
         let graph = &function.graph;
         let entries: Vec<Vec<Id>> =
             parts.iter().map(|places| places.iter().map(|&(o, e)| function.outputs[o].entries[e]).collect()).collect();
-        let sum = |marked: &[bool]| marked.iter().zip(cost).filter(|(m, _)| **m).map(|(_, c)| c).sum::<f64>();
+        let sum = |marked: &[bool]| marked.iter().zip(cost).filter(|(m, _)| **m).fold(0.0, |sum, (_, c)| sum + c);
         let shared = if together { shared(graph, &entries) } else { vec![false; graph.len()] };
         let part = |entries: &Vec<Id>| {
             let mut reached = graph.reached_from(entries.iter().copied());

@@ -1,6 +1,6 @@
 //! C: strict C99 without warnings, through the program that is generated with it.
 
-use super::cases::{Case, arm, mixed};
+use super::cases::{Case, SHIPPED, arm, mixed, shipped};
 use super::toolchain::{Folder, cc, run, succeed};
 use gyroflex::model::Fidelity;
 use gyroflex_codegen::emit::{Language, Precision, files};
@@ -40,6 +40,15 @@ fn arms_in_c_are_the_library() {
 #[test]
 fn all_quantities_in_c_are_the_library() {
     show("c-all", &mixed(0..4), Precision::Double, &["-O0"]);
+}
+
+#[test]
+fn robots_that_ship_are_the_library_in_c() {
+    for name in SHIPPED {
+        let case = [shipped(name)];
+        show("c-shipped-double", &case, Precision::Double, &["-O0"]);
+        show("c-shipped-single", &case, Precision::Single, &["-O0"]);
+    }
 }
 
 #[test]

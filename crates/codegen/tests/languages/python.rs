@@ -1,6 +1,6 @@
 //! Python: batches through NumPy.
 
-use super::cases::{arm, mixed};
+use super::cases::{SHIPPED, arm, mixed, shipped};
 use super::toolchain::{Folder, numpy, run};
 use gyroflex::model::Fidelity;
 use gyroflex_codegen::emit::{Language, Precision, files};
@@ -15,12 +15,13 @@ fn batches_in_python_are_the_library() {
     folder.write("run.py", include_str!("run.py"));
     let mut cases = mixed(0..2);
     cases.push(arm(Fidelity::ALL[3]));
+    cases.extend(SHIPPED.map(shipped));
     for case in &cases {
         for file in files(Language::Python, &case.head(), &case.functions, Precision::Double, &case.stem) {
             folder.write(&file.name, &file.text);
         }
         for (precision, dtype) in [(Precision::Double, "float64"), (Precision::Single, "float32")] {
-            if precision == Precision::Single && !case.stem.starts_with("arm") {
+            if precision == Precision::Single && case.stem.starts_with("mixed") {
                 continue;
             }
             let (mut command, mut points) = (numpy().expect("it is there"), Vec::new());

@@ -1,6 +1,6 @@
 //! Rust: a crate without `std` and without warnings, and a program on it.
 
-use super::cases::{Case, arm, mixed};
+use super::cases::{Case, SHIPPED, arm, mixed, shipped};
 use super::toolchain::{Folder, run, rustc, succeed};
 use gyroflex::model::Fidelity;
 use gyroflex_codegen::emit::{File, Language, Precision, Style, files};
@@ -117,6 +117,13 @@ fn arms_in_rust_are_the_library() {
 #[test]
 fn all_quantities_in_rust_are_the_library() {
     show("rust-all", &mixed(0..4), &STYLES[..1], &[]);
+}
+
+#[test]
+fn robots_that_ship_are_the_library_in_rust() {
+    for name in SHIPPED {
+        show("rust-shipped", &[shipped(name)], &STYLES[..2], &[]);
+    }
 }
 
 #[test]

@@ -11,6 +11,30 @@ use gyroflex_codegen::quantity::Quantity;
 use gyroflex_testkit::random::RandomFlexible;
 use gyroflex_testkit::tolerance::{Real, assert_close_above, norm};
 
+/// Inverse dynamics.
+pub fn inverse(s: &Subject) -> Vec<Known> {
+    let [tau_j, tau] = torques(s, s.at(), &s.state.qdd, &s.state.thetadd);
+    vec![Known::new("tau_j", tau_j), Known::new("tau", tau)]
+}
+
+pub fn energies(s: &Subject) -> Vec<Known> {
+    let model = s.robot().flexible.expect("a link bends");
+    let Energy { kinetic, gravity, elastic } =
+        flexible_energy(&model, s.at(), Scratch::of(&model).lend()).expect("it fits");
+    of_energy(s, kinetic, gravity, elastic)
+}
+
+pub fn poses(s: &Subject) -> Vec<Known> {
+    let model = s.robot().flexible.expect("a link bends");
+    let mut links = vec![Transform::identity(); s.bodies.len()];
+    let mut stations = vec![Transform::identity(); model.stations().len()];
+    let out = FlexiblePlacements { links: &mut links, stations: &mut stations };
+    flexible_placements(&model, &s.state.q, Scratch::of(&model).lend(), out).expect("it fits");
+    let links = of_poses(&links, ["positions", "rotations"]);
+    let stations = of_poses(&stations, ["station_positions", "station_rotations"]);
+    links.into_iter().chain(stations).collect()
+}
+
 fn torques(s: &Subject, state: State<f64>, qdd: &[f64], thetadd: &[f64]) -> [Vec<f64>; 2] {
     let model = s.robot().flexible.expect("a link bends");
     let [mut tau_j, mut tau] = [(); 2].map(|()| vec![0.0; model.nv()]);
@@ -22,10 +46,7 @@ fn torques(s: &Subject, state: State<f64>, qdd: &[f64], thetadd: &[f64]) -> [Vec
 
 #[test]
 fn generated_inverse_dynamics_of_bending_links_equals_library() {
-    bending_equals_library(40, Quantity::Inverse, |s| {
-        let [tau_j, tau] = torques(s, s.at(), &s.state.qdd, &s.state.thetadd);
-        vec![Known::new("tau_j", tau_j), Known::new("tau", tau)]
-    });
+    bending_equals_library(40, Quantity::Inverse, inverse);
 }
 
 #[test]
@@ -45,26 +66,12 @@ fn generated_reflected_inertia_of_bending_links_equals_library() {
 
 #[test]
 fn generated_energies_of_bending_links_equal_library() {
-    bending_equals_library(40, Quantity::Energy, |s| {
-        let model = s.robot().flexible.expect("a link bends");
-        let Energy { kinetic, gravity, elastic } =
-            flexible_energy(&model, s.at(), Scratch::of(&model).lend()).expect("it fits");
-        of_energy(s, kinetic, gravity, elastic)
-    });
+    bending_equals_library(40, Quantity::Energy, energies);
 }
 
 #[test]
 fn generated_placements_of_bending_links_equal_library() {
-    bending_equals_library(40, Quantity::Placements, |s| {
-        let model = s.robot().flexible.expect("a link bends");
-        let mut links = vec![Transform::identity(); s.bodies.len()];
-        let mut stations = vec![Transform::identity(); model.stations().len()];
-        let out = FlexiblePlacements { links: &mut links, stations: &mut stations };
-        flexible_placements(&model, &s.state.q, Scratch::of(&model).lend(), out).expect("it fits");
-        let links = of_poses(&links, ["positions", "rotations"]);
-        let stations = of_poses(&stations, ["station_positions", "station_rotations"]);
-        links.into_iter().chain(stations).collect()
-    });
+    bending_equals_library(40, Quantity::Placements, poses);
 }
 
 /// By the torques that accelerations ask for, as of links that do not bend.
@@ -83,7 +90,7 @@ fn generated_forward_dynamics_of_bending_links_equals_library() {
     }
 }
 
-fn accelerates_as_the_library<T: Real>(s: &Subject, function: &Function, tolerance: f64) {
+pub fn accelerates_as_the_library<T: Real>(s: &Subject, function: &Function, tolerance: f64) {
     let model = s.robot().flexible.expect("a link bends");
     let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![0.0; model.nv()]);
     let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
@@ -100,61 +107,79 @@ fn accelerates_as_the_library<T: Real>(s: &Subject, function: &Function, toleran
     assert_close_above(&what("tau_j"), s, &got("tau_j").expect("it is there"), &tau_j, tolerance, sum);
 }
 
-/// Inverse dynamics is `M q̈ + S θ̈` and the bias; friction on both sides; and what bent links ask for, `K η + D η̇`.
 #[test]
 fn generated_bias_forces_of_bending_links_are_what_is_left_of_inverse_dynamics() {
-    bending_equals_library(40, Quantity::Bias, |s| {
-        let rest = vec![0.0; s.state.qd.len()];
-        let [mut link, tau] = torques(s, s.at(), &rest, &rest);
-        let size = norm(&link).max(norm(&tau));
-        let model = s.robot().flexible.expect("a link bends");
-        let (mut motor, x) = (rest, &s.state);
-        for body in model.rigid().bodies().iter().filter(|body| body.joint.nv() == 1) {
-            let k = body.v_index();
-            let friction = body.friction.torque(x.qd[k]);
-            match &body.drive {
-                Some(Drive { rotor, elastic: Some(elastic) }) => {
-                    let slope = elastic.error.map_or(0.0, |e| e.value_and_slope(x.theta[k], rotor.gear_ratio).1);
-                    motor[k] = tau[k] - (1.0 - slope) * link[k] - rotor.reflected_friction(x.thetad[k]);
-                    link[k] -= friction;
-                }
-                Some(Drive { rotor, elastic: None }) => {
-                    link[k] = tau[k] - friction - rotor.reflected_friction(x.qd[k]);
-                }
-                None => link[k] -= friction,
+    bending_equals_library(40, Quantity::Bias, bias_forces);
+}
+
+/// Inverse dynamics is `M q̈ + S θ̈` and the bias; friction on both sides; and what bent links ask for, `K η + D η̇`.
+pub fn bias_forces(s: &Subject) -> Vec<Known> {
+    let rest = vec![0.0; s.state.qd.len()];
+    let [mut link, tau] = torques(s, s.at(), &rest, &rest);
+    let size = norm(&link).max(norm(&tau));
+    let model = s.robot().flexible.expect("a link bends");
+    let (mut motor, x) = (rest, &s.state);
+    for body in model.rigid().bodies().iter().filter(|body| body.joint.nv() == 1) {
+        let k = body.v_index();
+        let friction = body.friction.torque(x.qd[k]);
+        match &body.drive {
+            Some(Drive { rotor, elastic: Some(elastic) }) => {
+                let slope = elastic.error.map_or(0.0, |e| e.value_and_slope(x.theta[k], rotor.gear_ratio).1);
+                motor[k] = tau[k] - (1.0 - slope) * link[k] - rotor.reflected_friction(x.thetad[k]);
+                link[k] -= friction;
             }
-        }
-        let (nq, nv) = (model.rigid().nq(), model.rigid().nv());
-        for of in model.links() {
-            let modes = of.mode_range();
-            for (p, pair) in model.pairs()[of.pair_range()].iter().enumerate() {
-                let (j, k) = (modes.start + p / modes.len(), modes.start + p % modes.len());
-                link[nv + j] -= pair.stiffness * x.q[nq + k] + pair.damping * x.qd[nv + k];
+            Some(Drive { rotor, elastic: None }) => {
+                link[k] = tau[k] - friction - rotor.reflected_friction(x.qd[k]);
             }
+            None => link[k] -= friction,
         }
-        vec![Known::new("link", link).above(size), Known::new("motor", motor).above(size)]
-    });
+    }
+    let (nq, nv) = (model.rigid().nq(), model.rigid().nv());
+    for of in model.links() {
+        let modes = of.mode_range();
+        for (p, pair) in model.pairs()[of.pair_range()].iter().enumerate() {
+            let (j, k) = (modes.start + p / modes.len(), modes.start + p % modes.len());
+            link[nv + j] -= pair.stiffness * x.q[nq + k] + pair.damping * x.qd[nv + k];
+        }
+    }
+    vec![Known::new("link", link).above(size), Known::new("motor", motor).above(size)]
+}
+
+#[test]
+fn generated_gravity_torques_of_bending_links_equal_library() {
+    bending_equals_library(40, Quantity::Gravity, gravity);
 }
 
 /// The force that holds the robot is the slope of its potential, which the library knows by another route.
-#[test]
-fn generated_gravity_torques_of_bending_links_equal_library() {
-    bending_equals_library(40, Quantity::Gravity, |s| {
-        let model = s.robot().flexible.expect("a link bends");
-        let rest = vec![0.0; s.state.qd.len()];
-        let straight = State { q: &s.state.q, qd: &rest, theta: &rest, thetad: &rest };
-        let mut g = torques(s, straight, &rest, &rest)[0].clone();
-        let size = norm(&g);
-        let (nq, nv) = (model.rigid().nq(), model.rigid().nv());
-        for of in model.links() {
-            let modes = of.mode_range();
-            for (p, pair) in model.pairs()[of.pair_range()].iter().enumerate() {
-                let (j, k) = (modes.start + p / modes.len(), modes.start + p % modes.len());
-                g[nv + j] -= pair.stiffness * s.state.q[nq + k];
-            }
+pub fn gravity(s: &Subject) -> Vec<Known> {
+    let model = s.robot().flexible.expect("a link bends");
+    let rest = vec![0.0; s.state.qd.len()];
+    let straight = State { q: &s.state.q, qd: &rest, theta: &rest, thetad: &rest };
+    let mut g = torques(s, straight, &rest, &rest)[0].clone();
+    let size = norm(&g);
+    let (nq, nv) = (model.rigid().nq(), model.rigid().nv());
+    for of in model.links() {
+        let modes = of.mode_range();
+        for (p, pair) in model.pairs()[of.pair_range()].iter().enumerate() {
+            let (j, k) = (modes.start + p / modes.len(), modes.start + p % modes.len());
+            g[nv + j] -= pair.stiffness * s.state.q[nq + k];
         }
-        vec![Known::new("g", g).above(size)]
-    });
+    }
+    vec![Known::new("g", g).above(size)]
+}
+
+/// One block a link, as its records have it.
+pub fn stiffness(s: &Subject) -> Vec<Known> {
+    let model = s.robot().flexible.expect("a link bends");
+    let modes = model.modes();
+    let mut modal = vec![0.0; modes * modes];
+    for of in model.links() {
+        let own = of.mode_range();
+        for (p, pair) in model.pairs()[of.pair_range()].iter().enumerate() {
+            modal[(own.start + p / own.len()) * modes + own.start + p % own.len()] = pair.stiffness;
+        }
+    }
+    vec![Known::new("modal", modal)]
 }
 
 /// Modes have the stiffness that the description gives their links, one block a link; transmissions have what they have on a robot

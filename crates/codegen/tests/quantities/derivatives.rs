@@ -22,15 +22,15 @@ fn generated_forward_derivatives_equal_library() {
         for fidelity in Fidelity::ALL {
             let mut s = Subject::of(&robot, fidelity);
             let function = s.function(Quantity::ForwardDerivatives).expect("every robot has it");
-            compare::<f64>(&s, &function, DOUBLE);
+            differentiates_as_the_library::<f64>(&s, &function, DOUBLE);
             if s.round() {
-                compare::<f32>(&s, &function, SINGLE);
+                differentiates_as_the_library::<f32>(&s, &function, SINGLE);
             }
         }
     }
 }
 
-fn compare<T: Real>(s: &Subject, function: &Function, tolerance: f64) {
+pub fn differentiates_as_the_library<T: Real>(s: &Subject, function: &Function, tolerance: f64) {
     let got = s.evaluate::<T>(function, &[]);
     let of = |k: usize| got.get(k).map(|(_, x)| x.clone());
     let dqdd = of(0).expect("it is there");

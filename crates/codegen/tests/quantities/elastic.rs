@@ -14,7 +14,6 @@ use gyroflex_testkit::Dual;
 use gyroflex_testkit::random::{Options as Grown, RandomRobot};
 use gyroflex_testkit::tolerance::{Real, assert_close_above};
 
-/// `−∂τ_J/∂q` of forward dynamics: a transmission gives by its spring.
 #[test]
 fn generated_stiffness_is_the_slope_of_transmitted_torques() {
     let options = Grown { floating: 0.0, remote_rigid: false, ..grown() };
@@ -25,24 +24,28 @@ fn generated_stiffness_is_the_slope_of_transmitted_torques() {
             let s = Subject::of(&robot, fidelity);
             let Some(function) = s.function(Quantity::Stiffness) else { continue };
             shown += 1;
-            let (model, x) = (s.rigid.view(), &s.state);
-            let constant = |x: &[f64]| x.iter().map(|x| Dual::from_f64(*x)).collect::<Vec<Dual>>();
-            // Every transmission depends on its own joint alone: all may move at once.
-            let q: Vec<Dual> = x.q.iter().map(|q| Dual::new(*q, 1.0)).collect();
-            let (qd, theta, thetad, tau) = (constant(&x.qd), constant(&x.theta), constant(&x.thetad), constant(&x.tau));
-            let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![Dual::zero(); model.nv()]);
-            let state = State { q: &q, qd: &qd, theta: &theta, thetad: &thetad };
-            let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
-            let mut scratch = vec![AbaScratch::new(); model.bodies().len()];
-            aba(&model, state, &tau, External::none(), &mut scratch, out).expect("it fits");
-            let slope = |(body, tau_j): (&gyroflex::model::Body<f64>, &Dual)| {
-                if body.is_elastic() { -tau_j.slope } else { 0.0 }
-            };
-            let want = model.bodies().iter().zip(&tau_j).map(slope).collect();
-            s.assert_equal::<f64>(&function, &[Known::new("k", want)], &[], 1e-12);
+            s.assert_equal::<f64>(&function, &stiffness(&s), &[], DOUBLE);
         }
     }
     assert!(shown > 60, "{shown} robots are elastic");
+}
+
+/// `−∂τ_J/∂q` of forward dynamics: a transmission gives by its spring.
+pub fn stiffness(s: &Subject) -> Vec<Known> {
+    let (model, x) = (s.rigid.view(), &s.state);
+    let constant = |x: &[f64]| x.iter().map(|x| Dual::from_f64(*x)).collect::<Vec<Dual>>();
+    // Every transmission depends on its own joint alone: all may move at once.
+    let q: Vec<Dual> = x.q.iter().map(|q| Dual::new(*q, 1.0)).collect();
+    let (qd, theta, thetad, tau) = (constant(&x.qd), constant(&x.theta), constant(&x.thetad), constant(&x.tau));
+    let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![Dual::zero(); model.nv()]);
+    let state = State { q: &q, qd: &qd, theta: &theta, thetad: &thetad };
+    let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
+    let mut scratch = vec![AbaScratch::new(); model.bodies().len()];
+    aba(&model, state, &tau, External::none(), &mut scratch, out).expect("it fits");
+    let slope = |(body, tau_j): (&gyroflex::model::Body<f64>, &Dual)| {
+        if body.is_elastic() { -tau_j.slope } else { 0.0 }
+    };
+    vec![Known::new("k", model.bodies().iter().zip(&tau_j).map(slope).collect())]
 }
 
 /// Arms whose motors are found in a motion of any derivatives: every joint elastic, damping such that transients are slow enough
@@ -86,24 +89,32 @@ fn generated_elastic_inverse_equals_library() {
             let torque_derivatives = seed as usize % 3;
             let options = Options { torque_derivatives, ..Options::default() };
             let Ok(function) = function(&s.robot(), Quantity::ElasticInverse, &options) else { continue };
-            let orders = orders(&s, torque_derivatives);
-            let smoothness = Smoothness { joints: &orders, torque_derivatives };
-            // A motion of about a hertz, of numbers that both scalars have.
-            let single = s.round();
-            let rates =
-                |row: usize| robot.state(10 + row as u64).qd.into_iter().map(move |x| 0.1 * x * 6f64.powi(row as i32));
-            let rounded = |x: f64| f64::from(x as f32);
-            let derivatives: Vec<f64> = (1..=smoothness.order()).flat_map(rates).map(rounded).collect();
-            let deflection: Vec<f64> = s.state.qd.iter().map(|x| rounded(1e-3 * x)).collect();
-            let step = rounded(1e-3);
-            let want = library(&s, &smoothness, &derivatives, &deflection, step);
-            let given: [(&str, &[f64]); 3] =
-                [("derivatives", &derivatives), ("deflection", &deflection), ("step", &[step])];
-            assert_rows_equal::<f64>(&s, &function, &want, &given, DOUBLE);
-            if single {
-                assert_rows_equal::<f32>(&s, &function, &want, &given, SINGLE);
-            }
+            is_the_inverse(&mut s, &function, torque_derivatives, &|row| robot.state(10 + row as u64).qd);
         }
+    }
+}
+
+/// A motion of about a hertz, whose derivatives are of the size that `random` has.
+pub fn is_the_inverse(
+    s: &mut Subject,
+    function: &Function,
+    torque_derivatives: usize,
+    random: &dyn Fn(usize) -> Vec<f64>,
+) {
+    let orders = orders(s, torque_derivatives);
+    let smoothness = Smoothness { joints: &orders, torque_derivatives };
+    // Numbers that both scalars have.
+    let single = s.round();
+    let rates = |row: usize| random(row).into_iter().map(move |x| 0.1 * x * 6f64.powi(row as i32));
+    let rounded = |x: f64| f64::from(x as f32);
+    let derivatives: Vec<f64> = (1..=smoothness.order()).flat_map(rates).map(rounded).collect();
+    let deflection: Vec<f64> = s.state.qd.iter().map(|x| rounded(1e-3 * x)).collect();
+    let step = rounded(1e-3);
+    let want = library(s, &smoothness, &derivatives, &deflection, step);
+    let given: [(&str, &[f64]); 3] = [("derivatives", &derivatives), ("deflection", &deflection), ("step", &[step])];
+    assert_rows_equal::<f64>(s, function, &want, &given, DOUBLE);
+    if single {
+        assert_rows_equal::<f32>(s, function, &want, &given, SINGLE);
     }
 }
 

@@ -73,7 +73,9 @@ pub fn inverse_partials(s: &Subject) -> Vec<Known> {
     let out = InverseDerivatives { tau_j: &mut dtau_j, tau: &mut dtau };
     let mut scratch = s.scratch(DerivativeScratch::new());
     inverse_derivatives(&s.rigid.view(), s.at(), s.accel(), External::none(), &mut scratch, out).expect("it fits");
-    vec![Known::new("dtau_j", dtau_j), Known::new("dtau", dtau)]
+    // Torques are sums that turn with the angles: their derivatives have terms of their size.
+    let size = norm(&inverse(s)[0].value);
+    vec![Known::new("dtau_j", dtau_j).above(size), Known::new("dtau", dtau).above(size)]
 }
 
 pub fn forward(s: &Subject) -> [Vec<f64>; 3] {
@@ -125,11 +127,15 @@ pub fn coriolis(s: &Subject) -> Vec<Known> {
     let out = CoriolisMatrices { c: &mut c, c1: &mut c1, c2: &mut c2 };
     coriolis_matrices(&s.rigid.view(), s.at(), &mut s.scratch(DerivativeScratch::new()), out).expect("it fits");
     // Sums that may vanish of products of an inertia and a speed.
-    let speed = norm(&s.state.qd);
-    let spins = s.bodies.iter().filter_map(|body| body.drive).map(|drive| drive.gear_ratio * drive.rotor.inertia);
-    let spin = norm(&spins.collect::<Vec<f64>>()) * speed;
+    let (spin, speed) = (spin(s), norm(&s.state.qd));
     let c = Known::new("c", c).above(norm(&mass_matrix(s)[0].value) * speed);
     vec![c, Known::new("c1", c1).above(spin), Known::new("c2", c2).above(spin)]
+}
+
+/// Size of the momenta of spinning rotors.
+fn spin(s: &Subject) -> f64 {
+    let spins = s.bodies.iter().filter_map(|body| body.drive).map(|drive| drive.gear_ratio * drive.rotor.inertia);
+    norm(&spins.collect::<Vec<f64>>()) * norm(&s.state.qd)
 }
 
 pub fn gravity(s: &Subject) -> Vec<Known> {
@@ -143,7 +149,8 @@ pub fn bias_forces(s: &Subject) -> Vec<Known> {
     let [mut link, mut motor] = [(); 2].map(|()| vec![0.0; s.nv()]);
     let out = Bias { link: &mut link, motor: &mut motor };
     bias(&s.rigid.view(), s.at(), &mut s.scratch(DerivativeScratch::new()), out).expect("it fits");
-    vec![Known::new("link", link), Known::new("motor", motor)]
+    let motor = Known::new("motor", motor).above(spin(s) * norm(&s.state.qd));
+    vec![Known::new("link", link), motor]
 }
 
 pub fn energies(s: &Subject) -> Vec<Known> {

@@ -9,6 +9,7 @@ mod linearization;
 mod regrouped;
 mod rigid;
 mod scratch;
+mod shipped;
 mod slopes;
 mod subject;
 mod unavailable;

@@ -32,7 +32,7 @@ fn generated_forward_dynamics_equals_library() {
     }
 }
 
-fn accelerates_as_the_library<T: Real>(s: &Subject, function: &Function, tolerance: f64) {
+pub fn accelerates_as_the_library<T: Real>(s: &Subject, function: &Function, tolerance: f64) {
     let got = s.evaluate::<T>(function, &[]);
     let got = |name: &str| got.iter().find(|(of, _)| of == name).map(|(_, x)| x.clone());
     let [qdd, thetadd, tau_j] = library::forward(s);

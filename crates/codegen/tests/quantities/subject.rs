@@ -1,12 +1,15 @@
 //! Random robots as generation takes them, and generated functions at their states.
 
-use gyroflex::model::{BodySpec, Fidelity, RobotSpec};
+use gyroflex::model::{BodySpec, Fidelity, FlexibleModel, RobotSpec};
 use gyroflex::spatial::Vec3;
 use gyroflex_codegen::function::Function;
 use gyroflex_codegen::quantity::{Options, Quantity, function};
 use gyroflex_codegen::robot::Robot;
+use gyroflex_sim::robot::OwnedModel;
 use gyroflex_testkit::flexible::LoweredFlexible;
-use gyroflex_testkit::random::{FlexibleOptions, Options as Grown, RandomFlexible, RandomRobot};
+use gyroflex_testkit::random::{
+    FlexibleOptions, Options as Grown, RandomFlexible, RandomRobot, random_point, with_random_modes,
+};
 use gyroflex_testkit::tolerance::{Real, assert_close_above};
 use gyroflex_testkit::{Lowered, State};
 use std::fmt;
@@ -19,10 +22,25 @@ pub struct Subject {
     spring_tables: Vec<[f64; 2]>,
     gravity: Vec3<f64>,
     pub rigid: Lowered<f64>,
-    pub bending: Option<LoweredFlexible<f64>>,
+    bending: Option<Bending>,
     joints: Vec<String>,
     links: Vec<String>,
     pub state: State,
+}
+
+/// Records of links that bend.
+enum Bending {
+    Random(LoweredFlexible<f64>),
+    Loaded(OwnedModel),
+}
+
+impl Bending {
+    fn view(&self) -> FlexibleModel<'_, f64> {
+        match self {
+            Self::Random(model) => model.view(),
+            Self::Loaded(model) => model.flexible().expect("a link bends"),
+        }
+    }
 }
 
 /// Robots that have everything, of a size that a law can be shown for many of them.
@@ -55,7 +73,24 @@ impl Subject {
 
     pub fn bending(robot: &RandomFlexible, fidelity: Fidelity) -> Self {
         let bending = robot.lower(fidelity).expect("a random robot is valid");
-        Self { bending: Some(bending), state: robot.state(0), ..Self::of(&robot.robot, fidelity) }
+        let state = robot.state(0);
+        Self { bending: Some(Bending::Random(bending)), state, ..Self::of(&robot.robot, fidelity) }
+    }
+
+    /// A robot from files, in the model that they ask for.
+    pub fn loaded(robot: &gyroflex_sim::Robot) -> Self {
+        let loaded = robot.model(robot.fidelity).expect("a loaded robot is valid");
+        let RobotSpec { bodies, spring_tables, gravity } = robot.spec();
+        let seen = RandomRobot { seed: 0, bodies: bodies.into(), spring_tables: spring_tables.into(), gravity };
+        let bending = loaded.flexible().is_some().then_some(Bending::Loaded(loaded));
+        Self { bending, ..Self::of(&seen, robot.fidelity) }
+    }
+
+    /// Goes to another state, of numbers that both scalars have.
+    pub fn go(&mut self, index: u64) {
+        let state = random_point(&self.bodies, &self.spring_tables, index);
+        let modes = self.robot().flexible.map_or(0, |model| model.modes());
+        self.state = with_random_modes(state, modes, !index).rounded_to_f32();
     }
 
     pub fn robot(&self) -> Robot<'_> {
@@ -66,7 +101,7 @@ impl Subject {
             spec: RobotSpec { bodies: &self.bodies, spring_tables: &self.spring_tables, gravity: self.gravity },
             fidelity: self.fidelity,
             model: self.rigid.view(),
-            flexible: self.bending.as_ref().map(LoweredFlexible::view),
+            flexible: self.bending.as_ref().map(Bending::view),
             payload: None,
         }
     }

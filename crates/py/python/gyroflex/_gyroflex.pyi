@@ -2,6 +2,8 @@
 
 import os
 from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import ModuleType
 from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
@@ -15,6 +17,7 @@ __all__ = [
     "Constraint",
     "ElasticInverse",
     "FrequencyResponse",
+    "GeneratedCode",
     "Impact",
     "Linearization",
     "Mode",
@@ -30,6 +33,26 @@ __version__: str
 
 _Model: TypeAlias = Literal["complete", "reduced", "rigid", "rigid_reflected"]
 _Friction: TypeAlias = Literal["all", "viscous", "none"]
+_Quantity: TypeAlias = Literal[
+    "all",
+    "forward",
+    "inverse",
+    "mass-matrix",
+    "coupling",
+    "reflected-inertia",
+    "coriolis",
+    "gravity",
+    "bias",
+    "stiffness",
+    "energy",
+    "regressor",
+    "placements",
+    "jacobian",
+    "forward-derivatives",
+    "inverse-derivatives",
+    "linearization",
+    "elastic-inverse",
+]
 _Direction: TypeAlias = Literal["rx", "ry", "rz", "x", "y", "z"]
 _Point: TypeAlias = tuple[float, float, float]
 _Vector: TypeAlias = NDArray[np.float64]
@@ -156,6 +179,23 @@ class FrequencyResponse:
         """Frequencies of the dips of the motor's response [Hz]."""
 
 @final
+class GeneratedCode:
+    """Code or equations of one robot."""
+
+    @property
+    def files(self) -> dict[str, str]:
+        """Texts by the names of their files."""
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """What was generated: functions with their arguments, results and operation counts."""
+
+    def write(self, folder: str | os.PathLike[str]) -> list[Path]:
+        """Writes the files into a folder, which is made if it does not exist; returns their paths."""
+
+    def module(self) -> ModuleType:
+        """The functions as a Python module that is ready to use; of code in Python only."""
+
 class ElasticInverse:
     """What the motors must do for a motion of the links."""
 
@@ -634,6 +674,23 @@ class Robot:
         bounds: bool = False,
     ) -> dict[str, Any]:
         """When do the rotors matter: torque errors of the reduced model, as `gyroflex analyze --json` prints them."""
+
+    def codegen(
+        self,
+        what: _Quantity | Sequence[_Quantity] = ("forward", "inverse"),
+        *,
+        lang: Literal["python", "rust", "c", "json", "latex"] = "python",
+        model: _Model | None = None,
+        scalar: Literal["f64", "f32"] = "f64",
+        lanes: int | None = None,
+        keep_symbol: Sequence[str] = (),
+        link: str | None = None,
+        simplify_to: float | None = None,
+        along: str | os.PathLike[str] | None = None,
+        split: int | None = None,
+        name: str | None = None,
+    ) -> GeneratedCode:
+        """Straight-line code of this robot's equations, or the equations themselves, as `gyroflex codegen` writes them."""
 
 _Named: TypeAlias = tuple[dict[str, NDArray[np.float64]], dict[str, tuple[str, ...]], dict[str, tuple[str, ...]]]
 _Impacts: TypeAlias = tuple[tuple[float, float, tuple[str, ...], _Matrix, _Matrix, _Matrix], ...]

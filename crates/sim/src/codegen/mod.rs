@@ -4,7 +4,7 @@ mod report;
 mod request;
 mod samples;
 
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::robot::{OwnedModel, Robot};
 use gyroflex_codegen::emit::{self, File, Head, latex};
 use gyroflex_codegen::explicit::{ExplicitModel, Options as ExplicitOptions};
@@ -14,6 +14,7 @@ use gyroflex_codegen::quantity::{self, Options};
 use gyroflex_codegen::robot as symbolic;
 use gyroflex_codegen::split::split;
 use gyroflex_codegen::weigh;
+use std::path::{Path, PathBuf};
 
 pub use gyroflex_codegen::emit::{Language, Precision, Style};
 pub use report::{Parts, Report, Row, Weighing};
@@ -26,6 +27,31 @@ pub struct Generated {
     pub files: Vec<File>,
     /// What was generated.
     pub report: Report,
+}
+
+impl Generated {
+    /// Writes the files into a folder, which is made if it does not exist; returns their paths.
+    ///
+    /// # Errors
+    /// Names the file that cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+        let failed = |path: &Path| {
+            let path = path.display().to_string();
+            move |e: std::io::Error| Error {
+                kind: ErrorKind::Io,
+                file: path,
+                element: "output".to_owned(),
+                problem: format!("cannot be written: {e}"),
+                remedy: "choose a folder that you may write to".to_owned(),
+            }
+        };
+        std::fs::create_dir_all(folder).map_err(failed(folder))?;
+        let write = |file: &File| {
+            let path = folder.join(&file.name);
+            std::fs::write(&path, &file.text).map_err(failed(&path)).map(|()| path)
+        };
+        self.files.iter().map(write).collect()
+    }
 }
 
 /// Generates code for a robot. `progress` hears how far the work is, from 0 to 1, and ends it by saying no.

@@ -9,7 +9,7 @@ use gyroflex::model::Fidelity;
 use gyroflex_codegen::emit::{Language, Precision, Style};
 use gyroflex_codegen::explicit::{ExplicitModel, NotExplicit};
 use gyroflex_codegen::quantity::{self, Options, Point, Quantity, Unavailable};
-use gyroflex_codegen::robot::Parameter;
+use gyroflex_codegen::robot::{Parameter, UnknownParameter};
 
 /// What to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,8 +102,7 @@ impl Request {
 
     /// Parameters that stay symbols, and the frame of the Jacobian.
     pub(super) fn options(&self, robot: &Robot, source: &symbolic::Robot) -> Result<Options, Error> {
-        let parameter =
-            |name: &String| Parameter::of(name, source).map_err(|e| wrong(robot, "--keep-symbol", e.to_string(), ""));
+        let parameter = |name: &String| Parameter::of(name, source).map_err(|e| no_parameter(robot, &e));
         let kept = self.kept.iter().map(parameter).collect::<Result<_, _>>()?;
         let point = self.link.as_ref().map(|name| point(robot, name)).transpose()?;
         Ok(Options { kept, point, ..Options::default() })
@@ -145,6 +144,15 @@ fn named(robot: &Robot, name: &str) -> Result<Quantity, Error> {
         let remedy = format!("choose from {}, all", names.join(", "));
         wrong(robot, "--what", format!("nothing is called `{name}`"), &remedy)
     })
+}
+
+/// A parameter that the robot does not have.
+fn no_parameter(robot: &Robot, e: &UnknownParameter) -> Error {
+    let remedy = match &e.nearest {
+        Some(nearest) => format!("the nearest is `{nearest}`; choose from {}", e.known.join(", ")),
+        None => "leave it out: no parameter of this robot may stay a symbol".to_owned(),
+    };
+    wrong(robot, "--keep-symbol", format!("the robot has no parameter `{}` in this model", e.name), &remedy)
 }
 
 /// The origin of a link, moving or fixed to one that moves, in the axes of the world.

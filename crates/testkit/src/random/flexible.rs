@@ -46,11 +46,7 @@ impl FlexibleOptions {
         if fidelity.is_elastic() {
             return self.clone();
         }
-        Self {
-            robot: Options { remote_mount: 0.0, ..self.robot.clone() },
-            apart: std::env::var("APART").map_or(0.0, |_| 1.0),
-            ..self.clone()
-        }
+        Self { robot: Options { remote_mount: 0.0, ..self.robot.clone() }, apart: 0.0, ..self.clone() }
     }
 
     /// No motion costs energy.
@@ -143,23 +139,27 @@ impl RandomFlexible {
 
     /// A state of this robot with all loads; motor coordinates of modes are filled with unrelated numbers.
     pub fn state(&self, index: u64) -> State {
-        let mut s = self.robot.state(index);
-        let mut dice = Dice::new(!self.robot.seed ^ (index + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        let modes = self.modes();
-        for (to, size) in [
-            (&mut s.q, 0.05),
-            (&mut s.qd, 0.5),
-            (&mut s.qdd, 5.0),
-            (&mut s.theta, 3.0),
-            (&mut s.thetad, 2.0),
-            (&mut s.thetadd, 10.0),
-            (&mut s.tau, 5.0),
-            (&mut s.tau_ext, 5.0),
-        ] {
-            to.extend((0..modes).map(|_| dice.within(-size, size)));
-        }
-        s
+        let seed = !self.robot.seed ^ (index + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        with_random_modes(self.robot.state(index), self.modes(), seed)
     }
+}
+
+/// A state to which as many modes are added.
+pub fn with_random_modes(mut s: State, modes: usize, seed: u64) -> State {
+    let mut dice = Dice::new(seed);
+    for (to, size) in [
+        (&mut s.q, 0.05),
+        (&mut s.qd, 0.5),
+        (&mut s.qdd, 5.0),
+        (&mut s.theta, 3.0),
+        (&mut s.thetad, 2.0),
+        (&mut s.thetadd, 10.0),
+        (&mut s.tau, 5.0),
+        (&mut s.tau_ext, 5.0),
+    ] {
+        to.extend((0..modes).map(|_| dice.within(-size, size)));
+    }
+    s
 }
 
 fn bending_link(dice: &mut Dice, options: &FlexibleOptions, body: usize, hub: SpatialInertia<f64>) -> BendingLink {

@@ -8,7 +8,7 @@ mod robot;
 mod state;
 
 pub use constraint::anchored_at;
-pub use flexible::{FlexibleOptions, RandomFlexible};
+pub use flexible::{FlexibleOptions, RandomFlexible, with_random_modes};
 pub use robot::RandomRobot;
 pub use state::random_point;
 

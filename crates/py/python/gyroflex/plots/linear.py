@@ -1,0 +1,55 @@
+"""Frequency responses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._extras import extra
+from ..errors import ArgumentError
+from ._figure import COLOURS, legend, stacked
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from .._gyroflex import FrequencyResponse
+
+
+def frequency_response(responses: FrequencyResponse | Iterable[FrequencyResponse], labels: Sequence[str] | None = None) -> list[Axes]:
+    """Draws magnitude and phase of `Robot.frequency_response`: motor and link position per motor torque.
+
+    Parameters
+    ----------
+    responses
+        One or several, of several joints or of several robots.
+    labels
+        What each is called, the joint's name unless given.
+    """
+    several = list(responses) if isinstance(responses, Iterable) else [responses]
+    names = [response.joint for response in several] if labels is None else list(labels)
+    if len(names) != len(several):
+        problem, remedy = f"{len(names)} labels for {len(several)} responses", "give one for each"
+        raise ArgumentError(problem, "argument `labels`", "", remedy)
+    axes = stacked(2, height=3.0)
+    magnitude, phase = axes
+    for i, (response, name) in enumerate(zip(several, names, strict=True)):
+        for side, values, style in (("motor", response.motor, "--"), ("link", response.link, "-")):
+            look = {"color": COLOURS[i % len(COLOURS)], "linestyle": style}
+            magnitude.loglog(response.frequency, np.abs(values), label=f"{name}, {side}", **look)
+            phase.semilogx(response.frequency, _phase(values), **look)
+    magnitude.set_ylabel("position per torque\n[rad/(N m) or m/N]")
+    legend(magnitude)
+    phase.set_ylabel("phase [°]")
+    phase.yaxis.set_major_locator(extra("matplotlib.ticker", "plots").MultipleLocator(90))
+    phase.set_xlabel("frequency [Hz]")
+    return axes
+
+
+def _phase(values: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Phase without jumps, from above -360° to 0 at the first frequency [°]."""
+    phase = np.rad2deg(np.unwrap(np.angle(values)))
+    # Rounding must not make a turn of zero.
+    return phase - 360.0 * np.ceil((phase[0] - 1.0) / 360.0)  # type: ignore[no-any-return]
