@@ -3,8 +3,11 @@
 mod analyze;
 mod arguments;
 mod arrays;
+mod batch;
 mod constraint;
 mod derivatives;
+mod drive;
+mod energy;
 mod errors;
 mod inverse;
 mod linear;
@@ -14,6 +17,7 @@ mod matrices;
 mod operational;
 mod overrides;
 mod robot;
+mod rollout;
 mod simulate;
 mod sweep;
 mod workspace;
@@ -27,6 +31,8 @@ mod _gyroflex {
 
     #[pymodule_export]
     use crate::constraint::{PyConstrainedMotion, PyConstrainedTorques, PyConstraint, PyImpact};
+    #[pymodule_export]
+    use crate::drive::PyDrive;
     #[pymodule_export]
     use crate::inverse::PyElasticInverse;
     #[pymodule_export]

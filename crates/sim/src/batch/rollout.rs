@@ -59,12 +59,7 @@ pub struct Trajectories<'a, F> {
 ///
 /// # Errors
 /// An array that does not fit, or a robot with links that bend.
-pub fn rollout<F: Real>(
-    model: &OwnedModel,
-    rows: usize,
-    given: Rollout<F>,
-    out: Trajectories<F>,
-) -> Result<(), Error> {
+pub fn rollout<F: Real>(model: &OwnedModel, rows: usize, given: Rollout<F>, out: Trajectories<F>) -> Result<(), Error> {
     model.refuse_bending("a rollout")?;
     let records = model.cast::<F>();
     let model = &records.view();
@@ -91,7 +86,9 @@ pub fn rollout<F: Real>(
         let stages = integrate::rk4_len(model).max(integrate::euler_len(model));
         (Work::new(model), vec![F::Lanes::zero(); stages])
     };
-    in_parallel(tasks, storage, |(work, stages), (index, out)| motion(model, &given, index * F::LANES, work, stages, out))
+    in_parallel(tasks, storage, |(work, stages), (index, out)| {
+        motion(model, &given, index * F::LANES, work, stages, out)
+    })
 }
 
 /// The motions of one group of lanes, from `row` on.

@@ -2,7 +2,8 @@
 
 use gyroflex::Scalar;
 use gyroflex::dynamics::{
-    AbaScratch, CrbaScratch, DerivativeScratch, ForwardScratch, JointSpaceScratch, RneaScratch, joint_space_len, matrix_len,
+    AbaScratch, CrbaScratch, DerivativeScratch, ForwardScratch, JointSpaceScratch, RneaScratch, joint_space_len,
+    matrix_len,
 };
 use gyroflex::model::Model;
 use gyroflex::spatial::{Motion, Transform};
