@@ -30,7 +30,7 @@ impl Origin {
 }
 
 /// The motor of a joint with its gear and transmission.
-#[pyclass(name = "Drive", module = "gyroflex", frozen, skip_from_py_object)]
+#[pyclass(name = "Drive", module = "gyroflex", frozen)]
 #[derive(Clone, Copy)]
 pub(crate) struct PyDrive(DriveSpec);
 
@@ -52,7 +52,7 @@ impl PyDrive {
     #[getter]
     fn stiffness(&self) -> Option<f64> {
         match self.0.transmission {
-            TransmissionSpec::Elastic { spring: SpringSpec::Cubic { stiffness, .. }, .. } => Some(stiffness),
+            TransmissionSpec::Elastic { spring: SpringSpec::Polynomial { stiffness, .. }, .. } => Some(stiffness),
             _ => None,
         }
     }

@@ -1,6 +1,6 @@
 //! Matrices and forces of the equations of motion that belong to velocity and gravity.
 
-use crate::arrays::{Matrix, Vector, matrix, vector};
+use crate::arrays::{matrix, vector};
 use crate::batch::Need;
 use crate::errors;
 use crate::robot::PyRobot;

@@ -1,7 +1,7 @@
 //! `gyroflex.Robot`: the calculator of one robot.
 
 use crate::arguments::{self, Layout};
-use crate::arrays::{Matrix, Vector, matrix, vector};
+use crate::arrays::{Vector, matrix, vector};
 use crate::batch::Need;
 use crate::drive::Origin;
 use crate::errors;
