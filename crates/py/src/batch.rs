@@ -125,7 +125,6 @@ pub(crate) fn columns<'py, F: Float>(
     let mut all = all.to_vec();
     for row in all.chunks_mut(n) {
         let mut quaternion: [f64; 4] = core::array::from_fn(|i| row[3 + i].into());
-        // A quaternion of float32 has length one to its own rounding.
         unit_quaternion(&mut quaternion).map_err(|e| errors::argument(name, e.problem, e.remedy))?;
         row[3..7].iter_mut().zip(quaternion).for_each(|(to, from)| *to = F::from_f64(from));
     }
@@ -180,7 +179,9 @@ impl PyRobot {
         out: Option<&Bound<'py, PyAny>>,
         single: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        match (Batch::of(arguments)?, out) {
+        // Links that bend have no lanes: one state of them is computed in float64, whatever it is given in.
+        let batch = Batch::of(arguments)?.filter(|batch| batch.rows.is_some() || self.layout.modes == 0);
+        match (batch, out) {
             (None, None) => single(),
             (None, Some(out)) => fill(&shapes(algorithm, self.layout.nv), &single()?, out),
             (Some(batch), out) if batch.single_precision => {

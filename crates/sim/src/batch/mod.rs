@@ -17,6 +17,8 @@ use crate::robot::OwnedModel;
 use gyroflex::dynamics::{Forward, Inverse};
 use gyroflex::model::SizeError;
 use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::sync::LazyLock;
 use work::Work;
 
 /// Lanes that one task takes one after the other: enough to hide what handing it out costs, few enough to keep all cores busy to
@@ -92,8 +94,15 @@ fn in_parallel<T: Send, W>(
     if tasks.len() <= 1 {
         return tasks.into_iter().enumerate().try_for_each(|task| run(&mut work(), task));
     }
-    tasks.into_par_iter().enumerate().try_for_each_init(work, run)
+    POOL.install(|| tasks.into_par_iter().enumerate().try_for_each_init(work, run))
 }
+
+/// Unoptimised builds keep all intermediate lanes on the stack, which is more than a thread has by default.
+const STACK: usize = 32 << 20;
+
+/// One thread for each core, or `RAYON_NUM_THREADS`.
+static POOL: LazyLock<ThreadPool> =
+    LazyLock::new(|| ThreadPoolBuilder::new().stack_size(STACK).build().expect("the system has threads"));
 
 /// States of forward dynamics: positions, velocities and motor torques, one state a row.
 #[derive(Clone, Copy, Debug)]
