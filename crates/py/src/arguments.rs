@@ -8,7 +8,7 @@ use gyroflex_sim::load::{Mimic, nearest::nearest};
 use pyo3::prelude::*;
 
 /// Entries of a floating root in an array over the velocities.
-const ROOT: usize = 6;
+pub(crate) const ROOT: usize = 6;
 
 const POSITIONS: &str = "give one entry per position coordinate, in the order of `joint_names`, then `mode_names`; a floating root leads with x y z qx qy qz qw";
 const VELOCITIES: &str = "give one entry per velocity coordinate, in the order of `joint_names`, then `mode_names`; a floating root leads with six";

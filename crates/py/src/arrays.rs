@@ -91,7 +91,7 @@ pub(crate) fn read_rows(name: &str, value: &Bound<'_, PyAny>, columns: usize, me
 }
 
 /// A shape as Python writes it.
-fn text_of(shape: &[usize]) -> String {
+pub(crate) fn text_of(shape: &[usize]) -> String {
     match shape {
         [one] => format!("({one},)"),
         _ => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
@@ -104,21 +104,29 @@ fn converted<'py, const AXES: usize>(
     value: &Bound<'py, PyAny>,
     misfit: &impl Fn(String) -> PyErr,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let array = numbers(name, value)?;
+    if array.ndim() != AXES {
+        return Err(misfit(text_of(array.shape())));
+    }
+    array.call_method1("astype", (numpy::dtype::<f64>(value.py()),))
+}
+
+/// An array of real numbers of any kind and shape.
+///
+/// # Errors
+/// `ArgumentError` if it holds something else.
+pub(crate) fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
     let py = value.py();
     let not_numbers = |problem: String| errors::argument(name, problem, "give an array of real numbers");
     let numpy = py.import("numpy")?;
     let array = numpy.call_method1("asarray", (value,)).map_err(|e| not_numbers(format!("not an array: {e}")))?;
     let array = array.cast_into::<PyUntypedArray>().map_err(|e| not_numbers(e.to_string()))?;
-    let kind = array.dtype().kind();
     let empty = array.len() == 0;
-    if !(matches!(kind, b'f' | b'i' | b'u') || empty) {
+    if !(matches!(array.dtype().kind(), b'f' | b'i' | b'u') || empty) {
         let dtype = array.dtype().str().unwrap_or_else(|_| PyString::new(py, "?"));
         return Err(not_numbers(format!("an array of {dtype} is given")));
     }
-    if array.ndim() != AXES {
-        return Err(misfit(text_of(array.shape())));
-    }
-    array.call_method1("astype", (numpy::dtype::<f64>(py),))
+    Ok(array)
 }
 
 /// A result over the joints.

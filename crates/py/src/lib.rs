@@ -3,9 +3,12 @@
 mod analyze;
 mod arguments;
 mod arrays;
+mod batch;
 mod codegen;
 mod constraint;
 mod derivatives;
+mod drive;
+mod energy;
 mod errors;
 mod inverse;
 mod linear;
@@ -15,6 +18,7 @@ mod matrices;
 mod operational;
 mod overrides;
 mod robot;
+mod rollout;
 mod simulate;
 mod sweep;
 mod workspace;
@@ -30,6 +34,8 @@ mod _gyroflex {
     use crate::codegen::PyGeneratedCode;
     #[pymodule_export]
     use crate::constraint::{PyConstrainedMotion, PyConstrainedTorques, PyConstraint, PyImpact};
+    #[pymodule_export]
+    use crate::drive::PyDrive;
     #[pymodule_export]
     use crate::inverse::PyElasticInverse;
     #[pymodule_export]

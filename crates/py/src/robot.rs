@@ -1,16 +1,19 @@
 //! `gyroflex.Robot`: the calculator of one robot.
 
 use crate::arguments::{self, Layout};
-use crate::arrays::{Matrix, Vector, matrix, vector};
+use crate::arrays::{Vector, matrix, vector};
+use crate::batch::Need;
+use crate::drive::Origin;
 use crate::errors;
 use crate::inverse::Inverses;
 use crate::overrides::overrides;
 use crate::workspace::{Pool, Workspace};
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex_sim::Robot;
+use gyroflex_sim::batch::Algorithm;
 use gyroflex_sim::bending::CrossSection;
+use gyroflex_sim::load::LoadOptions;
 use gyroflex_sim::load::nearest::nearest;
-use gyroflex_sim::load::{LoadOptions, load};
 use gyroflex_sim::robot::Link;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -31,6 +34,11 @@ use std::path::PathBuf;
 /// those are zero then. A mode has no motor: its entries of `theta`, `thetad` and `thetadd` are ignored, its entry of `tau` is a
 /// generalised force.
 ///
+/// Where a method takes `out`, its arrays may also be of shape `(batch, n)`, any of them, and the results lead with that axis: the states
+/// are computed side by side in lanes and on all cores (`RAYON_NUM_THREADS` limits them), with the interpreter released, and agree with
+/// single calls to rounding. If all arrays are float32, so are the computation and the results; otherwise float64. `out` is an array, or a
+/// tuple of them, that takes the results.
+///
 /// `model` is one of `complete`, `reduced`, `rigid`, `rigid_reflected`; the default is the one of the robot's file.
 #[pyclass(name = "Robot", module = "gyroflex", frozen)]
 pub(crate) struct PyRobot {
@@ -38,6 +46,9 @@ pub(crate) struct PyRobot {
     pool: Pool,
     pub(crate) inverses: Inverses,
     pub(crate) layout: Layout,
+    pub(crate) origin: Origin,
+    /// How it was read.
+    pub(crate) options: LoadOptions,
 }
 
 #[pymethods]
@@ -73,12 +84,7 @@ impl PyRobot {
         let model = model.map(arguments::fidelity).transpose()?;
         let mimic = mimic.map(arguments::mimic).transpose()?;
         let options = LoadOptions { floating, model, mimic, overrides: overrides(set)?, ..LoadOptions::default() };
-        let robot = py.detach(|| load(&path, &options)).map_err(errors::raise)?;
-        let lowered = robot.model(robot.fidelity).map_err(errors::raise)?;
-        let (nq, nv, modes) = (lowered.nq(), lowered.nv(), robot.flexible.modes());
-        let layout = Layout { nq, nv, modes, floating: robot.is_floating() };
-        errors::warn(py, &robot.warnings)?;
-        Ok(Self { robot, pool: Pool::default(), inverses: Inverses::default(), layout })
+        Origin::File(path).read(py, options)
     }
 
     /// The robot's name.
@@ -164,7 +170,7 @@ impl PyRobot {
     /// (qdd, thetadd)
     ///     Accelerations of joints and motors, shape `(nv,)` [rad/s² or m/s²]; `thetadd` is seen from the link side and
     ///     equals `qdd` at joints without an elastic transmission.
-    #[pyo3(signature = (q, qd, theta=None, thetad=None, tau=None, *, model=None, tau_ext=None))]
+    #[pyo3(signature = (q, qd, theta=None, thetad=None, tau=None, *, model=None, tau_ext=None, out=None))]
     #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
     fn forward_dynamics<'py>(
         &self,
@@ -176,21 +182,33 @@ impl PyRobot {
         tau: Option<&Bound<'py, PyAny>>,
         model: Option<&str>,
         tau_ext: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Vector<'py>, Vector<'py>)> {
-        self.with(model, |w| {
-            self.layout.state(w, q, qd, theta, thetad)?;
-            let Some(tau) = tau else {
-                return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
-            };
-            self.layout.forces("tau", tau, &mut w.first)?;
-            let Workspace { dynamics, q, qd, theta, thetad, first: tau, tau_ext: room, out, .. } = w;
-            let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
-            let [qdd, thetadd, tau_j] = out;
-            dynamics
-                .forward(State { q, qd, theta, thetad }, tau, ext, Forward { qdd, thetadd, tau_j })
-                .map_err(errors::raise)?;
-            Ok((vector(py, "qdd", qdd)?, vector(py, "thetadd", thetadd)?))
-        })
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let single = || {
+            self.with(model, |w| {
+                self.layout.state(w, q, qd, theta, thetad)?;
+                let Some(tau) = tau else {
+                    return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
+                };
+                self.layout.forces("tau", tau, &mut w.first)?;
+                let Workspace { dynamics, q, qd, theta, thetad, first: tau, tau_ext: room, out, .. } = w;
+                let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
+                let [qdd, thetadd, tau_j] = out;
+                dynamics
+                    .forward(State { q, qd, theta, thetad }, tau, ext, Forward { qdd, thetadd, tau_j })
+                    .map_err(errors::raise)?;
+                Ok((vector(py, "qdd", qdd)?, vector(py, "thetadd", thetadd)?).into_pyobject(py)?.into_any())
+            })
+        };
+        let arguments = [
+            ("q", Some(q), Need::Always),
+            ("qd", Some(qd), Need::Always),
+            ("theta", theta, Need::Elastic),
+            ("thetad", thetad, Need::Elastic),
+            ("tau", tau, Need::Always),
+            ("tau_ext", tau_ext, Need::Never),
+        ];
+        self.evaluate(py, Algorithm::ForwardDynamics, model, &arguments, out, single)
     }
 
     /// Torques that a motion asks for.
@@ -211,7 +229,7 @@ impl PyRobot {
     /// (tau_j, tau)
     ///     What the transmissions must exert on the joints, and what the motors must exert, seen from the link side; shape
     ///     `(nv,)` [N m or N]. `tau` is `tau_j` plus rotor inertia, gyroscopic coupling and friction on the motor side.
-    #[pyo3(signature = (q, qd, qdd, theta=None, thetad=None, thetadd=None, *, model=None, tau_ext=None))]
+    #[pyo3(signature = (q, qd, qdd, theta=None, thetad=None, thetadd=None, *, model=None, tau_ext=None, out=None))]
     #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
     fn inverse_dynamics<'py>(
         &self,
@@ -224,19 +242,34 @@ impl PyRobot {
         thetadd: Option<&Bound<'py, PyAny>>,
         model: Option<&str>,
         tau_ext: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Vector<'py>, Vector<'py>)> {
-        self.with(model, |w| {
-            self.layout.state(w, q, qd, theta, thetad)?;
-            self.layout.velocities("qdd", qdd, &mut w.first)?;
-            self.layout.motors("thetadd", thetadd, w.elastic, &mut w.second)?;
-            let Workspace { dynamics, q, qd, theta, thetad, first: qdd, second: thetadd, tau_ext: room, out, .. } = w;
-            let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
-            let [tau_j, tau, _] = out;
-            dynamics
-                .inverse(State { q, qd, theta, thetad }, Acceleration { qdd, thetadd }, ext, Inverse { tau_j, tau })
-                .map_err(errors::raise)?;
-            Ok((vector(py, "tau_j", tau_j)?, vector(py, "tau", tau)?))
-        })
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let single = || {
+            self.with(model, |w| {
+                self.layout.state(w, q, qd, theta, thetad)?;
+                self.layout.velocities("qdd", qdd, &mut w.first)?;
+                self.layout.motors("thetadd", thetadd, w.elastic, &mut w.second)?;
+                let Workspace {
+                    dynamics, q, qd, theta, thetad, first: qdd, second: thetadd, tau_ext: room, out, ..
+                } = w;
+                let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
+                let [tau_j, tau, _] = out;
+                dynamics
+                    .inverse(State { q, qd, theta, thetad }, Acceleration { qdd, thetadd }, ext, Inverse { tau_j, tau })
+                    .map_err(errors::raise)?;
+                Ok((vector(py, "tau_j", tau_j)?, vector(py, "tau", tau)?).into_pyobject(py)?.into_any())
+            })
+        };
+        let arguments = [
+            ("q", Some(q), Need::Always),
+            ("qd", Some(qd), Need::Always),
+            ("qdd", Some(qdd), Need::Always),
+            ("theta", theta, Need::Elastic),
+            ("thetad", thetad, Need::Elastic),
+            ("thetadd", thetadd, Need::Elastic),
+            ("tau_ext", tau_ext, Need::Never),
+        ];
+        self.evaluate(py, Algorithm::InverseDynamics, model, &arguments, out, single)
     }
 
     /// Inertia matrix `M(q)` of the link side, shape `(nv, nv)` [kg m², kg m, kg]; rigidly geared rotors are fully in.
@@ -247,13 +280,23 @@ impl PyRobot {
     ///     Joint positions, shape `(nq,)` [rad or m].
     /// model
     ///     Which physics of the motors.
-    #[pyo3(signature = (q, *, model=None))]
-    fn mass_matrix<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, model: Option<&str>) -> PyResult<Matrix<'py>> {
-        self.with(model, |w| {
-            self.layout.positions(q, &mut w.q)?;
-            w.dynamics.mass_matrix(&w.q, &mut w.matrix).map_err(errors::raise)?;
-            matrix(py, "mass matrix", &w.matrix, self.layout.nv)
-        })
+    #[pyo3(signature = (q, *, model=None, out=None))]
+    fn mass_matrix<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        model: Option<&str>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let single = || {
+            self.with(model, |w| {
+                self.layout.positions(q, &mut w.q)?;
+                w.dynamics.mass_matrix(&w.q, &mut w.matrix).map_err(errors::raise)?;
+                Ok(matrix(py, "mass matrix", &w.matrix, self.layout.nv)?.into_any())
+            })
+        };
+        let arguments = [("q", Some(q), Need::Always)];
+        self.evaluate(py, Algorithm::MassMatrix, model, &arguments, out, single)
     }
 
     /// Inertial coupling `S(q)` of link accelerations (rows) and motor accelerations (columns) seen from the link side,
@@ -265,18 +308,23 @@ impl PyRobot {
     ///     Joint positions, shape `(nq,)` [rad or m].
     /// model
     ///     Which physics of the motors; the coupling is zero in all but the complete one.
-    #[pyo3(signature = (q, *, model=None))]
+    #[pyo3(signature = (q, *, model=None, out=None))]
     fn coupling_matrix<'py>(
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
         model: Option<&str>,
-    ) -> PyResult<Matrix<'py>> {
-        self.with(model, |w| {
-            self.layout.positions(q, &mut w.q)?;
-            w.dynamics.coupling(&w.q, &mut w.matrix).map_err(errors::raise)?;
-            matrix(py, "coupling matrix", &w.matrix, self.layout.nv)
-        })
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let single = || {
+            self.with(model, |w| {
+                self.layout.positions(q, &mut w.q)?;
+                w.dynamics.coupling(&w.q, &mut w.matrix).map_err(errors::raise)?;
+                Ok(matrix(py, "coupling matrix", &w.matrix, self.layout.nv)?.into_any())
+            })
+        };
+        let arguments = [("q", Some(q), Need::Always)];
+        self.evaluate(py, Algorithm::CouplingMatrix, model, &arguments, out, single)
     }
 
     /// Pose of a link in the world, shape `(4, 4)`: rotation from the link's axes to the world's, position of its origin [m].
@@ -287,26 +335,37 @@ impl PyRobot {
     ///     Name of a link of the URDF, moving, fused or fixed.
     /// q
     ///     Joint positions, shape `(nq,)` [rad or m].
-    fn placement<'py>(&self, py: Python<'py>, frame: &str, q: &Bound<'py, PyAny>) -> PyResult<Matrix<'py>> {
+    #[pyo3(signature = (frame, q, *, out=None))]
+    fn placement<'py>(
+        &self,
+        py: Python<'py>,
+        frame: &str,
+        q: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let link = self.link(frame)?;
-        self.with(None, |w| {
-            self.layout.positions(q, &mut w.q)?;
-            w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
-            let index = self.robot.links.iter().position(|l| l.name == link.name).unwrap_or_default();
-            let section = CrossSection::of_link(&self.robot, index);
-            let pose = match (link.body, section) {
-                (None, _) => link.placement,
-                (Some(body), None) => link.placement.after(w.poses[body]),
-                (Some(body), Some(section)) => {
-                    link.placement.after(section.pose(w.dynamics.eta(&w.q)).after(w.poses[body]))
-                }
-            };
-            let [x, y, z] = pose.rotation().rows.map(|row| row.to_array());
-            let p = pose.pos.to_array();
-            let rows = [x, y, z].into_iter().zip(p).flat_map(|(r, p)| [r[0], r[1], r[2], p]);
-            let numbers: Vec<f64> = rows.chain([0.0, 0.0, 0.0, 1.0]).collect();
-            matrix(py, "placement", &numbers, 4)
-        })
+        let single = || {
+            self.with(None, |w| {
+                self.layout.positions(q, &mut w.q)?;
+                w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
+                let index = self.robot.links.iter().position(|l| l.name == link.name).unwrap_or_default();
+                let section = CrossSection::of_link(&self.robot, index);
+                let pose = match (link.body, section) {
+                    (None, _) => link.placement,
+                    (Some(body), None) => link.placement.after(w.poses[body]),
+                    (Some(body), Some(section)) => {
+                        link.placement.after(section.pose(w.dynamics.eta(&w.q)).after(w.poses[body]))
+                    }
+                };
+                let [x, y, z] = pose.rotation().rows.map(|row| row.to_array());
+                let p = pose.pos.to_array();
+                let rows = [x, y, z].into_iter().zip(p).flat_map(|(r, p)| [r[0], r[1], r[2], p]);
+                let numbers: Vec<f64> = rows.chain([0.0, 0.0, 0.0, 1.0]).collect();
+                Ok(matrix(py, "placement", &numbers, 4)?.into_any())
+            })
+        };
+        let arguments = [("q", Some(q), Need::Always)];
+        self.evaluate(py, Algorithm::Placement(link.body, link.placement), None, &arguments, out, single)
     }
 
     fn __repr__(&self) -> String {
@@ -316,6 +375,14 @@ impl PyRobot {
 }
 
 impl PyRobot {
+    pub(crate) fn new(py: Python<'_>, robot: Robot, origin: Origin, options: LoadOptions) -> PyResult<Self> {
+        let lowered = robot.model(robot.fidelity).map_err(errors::raise)?;
+        let (nq, nv, modes) = (lowered.nq(), lowered.nv(), robot.flexible.modes());
+        let layout = Layout { nq, nv, modes, floating: robot.is_floating() };
+        errors::warn(py, &robot.warnings)?;
+        Ok(Self { robot, pool: Pool::default(), inverses: Inverses::default(), layout, origin, options })
+    }
+
     fn joints(&self) -> impl Iterator<Item = &gyroflex_sim::robot::Joint> {
         self.robot.joints.iter().skip(usize::from(self.floating()))
     }

@@ -31,13 +31,12 @@ def test_errors_survive_pickling(kind: str) -> None:
     ("name", "value", "given"),
     [
         ("q", np.zeros(4), "(4,)"),
-        ("q", np.zeros((3, 1)), "(3, 1)"),
-        ("qd", np.zeros((2, 3)), "(2, 3)"),
+        ("q", np.zeros((3, 1, 3)), "(3, 1, 3)"),
         ("qd", 1.0, "()"),
         ("theta", [], "(0,)"),
         ("thetad", np.zeros(2), "(2,)"),
         ("tau", np.zeros(9), "(9,)"),
-        ("tau_ext", np.zeros((1, 3)), "(1, 3)"),
+        ("tau_ext", np.zeros((1, 1, 3)), "(1, 1, 3)"),
     ],
 )
 def test_a_wrong_shape_is_named_with_the_expected_one(arm: gyroflex.Robot, name: str, value: object, given: str) -> None:

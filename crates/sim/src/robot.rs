@@ -3,6 +3,7 @@
 use crate::bending::Lowered;
 use crate::error::{Error, Warning};
 use crate::flexible::{Flexible, Place};
+use gyroflex::Scalar;
 use gyroflex::dynamics::Hold;
 use gyroflex::model::{Body, BodySpec, Fidelity, FlexibleModel, Knot, Model, RobotSpec};
 use gyroflex::spatial::{SpatialInertia, Transform, Vec3};
@@ -144,6 +145,20 @@ pub struct OwnedModel {
     pub fidelity: Fidelity,
 }
 
+/// Records of a robot in another scalar.
+pub(crate) struct Records<F> {
+    bodies: Vec<Body<F>>,
+    knots: Vec<Knot<F>>,
+    gravity: Vec3<F>,
+}
+
+impl<F: Scalar<Param = F>> Records<F> {
+    /// The view the algorithms take.
+    pub(crate) fn view(&self) -> Model<'_, F> {
+        Model::new(&self.bodies, &self.knots, self.gravity)
+    }
+}
+
 impl Robot {
     /// The description as the core takes it.
     pub fn spec(&self) -> RobotSpec<'_> {
@@ -224,6 +239,15 @@ impl OwnedModel {
     /// The view the algorithms take: of the robot whose links do not bend.
     pub fn view(&self) -> Model<'_, f64> {
         Model::new(&self.bodies, &self.knots, self.gravity)
+    }
+
+    /// The records of the robot whose links do not bend, every number rounded to another scalar.
+    pub(crate) fn cast<F: Scalar<Param = F>>(&self) -> Records<F> {
+        Records {
+            bodies: self.bodies.iter().map(Body::cast).collect(),
+            knots: self.knots.iter().map(Knot::cast).collect(),
+            gravity: self.gravity.map(F::from_f64),
+        }
     }
 
     /// The view that algorithms of flexible links take, where there are any.

@@ -15,6 +15,7 @@ __all__ = [
     "ConstrainedMotion",
     "ConstrainedTorques",
     "Constraint",
+    "Drive",
     "ElasticInverse",
     "FrequencyResponse",
     "GeneratedCode",
@@ -373,8 +374,36 @@ class Impact:
         """How many contacts were released because they would have pulled."""
 
 @final
+class Drive:
+    """The motor of a joint with its gear and transmission."""
+
+    @property
+    def rotor_inertia(self) -> float:
+        """Inertia of the rotor about its spin axis, motor side [kg m²]."""
+
+    @property
+    def ratio(self) -> float:
+        """Rotor turns per joint turn, or rotor radians per metre."""
+
+    @property
+    def stiffness(self) -> float | None:
+        """Stiffness of the transmission without deflection [N m/rad or N/m]; `None` of a rigid one, or one given by a table."""
+
+    @property
+    def damping(self) -> float | None:
+        """Damping of the transmission [N m s/rad or N s/m]; `None` of a rigid one."""
+
+    @property
+    def friction(self) -> dict[str, float]:
+        """Friction on the motor side: `viscous` [N m s/rad], `coulomb` [N m], `smoothing_velocity` [rad/s]."""
+
+@final
 class Robot:
-    """A robot with its drives, loaded from files."""
+    """A robot with its drives, loaded from files.
+
+    Where a method takes `out`, its arrays may also be of shape `(batch, n)`, any of them; results lead with that axis. All in float32
+    gives float32, else float64.
+    """
 
     @staticmethod
     def load(
@@ -445,6 +474,7 @@ class Robot:
         *,
         model: _Model | None = None,
         tau_ext: ArrayLike | None = None,
+        out: Sequence[_Matrix] | None = None,
     ) -> tuple[_Vector, _Vector]:
         """Accelerations `(qdd, thetadd)` of links and motors, shape `(nv,)` each."""
 
@@ -459,34 +489,123 @@ class Robot:
         *,
         model: _Model | None = None,
         tau_ext: ArrayLike | None = None,
+        out: Sequence[_Matrix] | None = None,
     ) -> tuple[_Vector, _Vector]:
         """Torques `(tau_j, tau)` of transmissions and motors that a motion asks for, shape `(nv,)` each [N m or N]."""
 
-    def mass_matrix(self, q: ArrayLike, *, model: _Model | None = None) -> NDArray[np.float64]:
+    def mass_matrix(
+        self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None
+    ) -> NDArray[np.float64]:
         """Inertia matrix `M(q)` of the link side, shape `(nv, nv)`."""
 
-    def coupling_matrix(self, q: ArrayLike, *, model: _Model | None = None) -> NDArray[np.float64]:
+    def coupling_matrix(
+        self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None
+    ) -> NDArray[np.float64]:
         """Inertial coupling `S(q)` of links (rows) and motors (columns), shape `(nv, nv)`."""
 
-    def placement(self, frame: str, q: ArrayLike) -> NDArray[np.float64]:
+    def placement(self, frame: str, q: ArrayLike, *, out: _Matrix | None = None) -> NDArray[np.float64]:
         """Pose of a link in the world, shape `(4, 4)`."""
 
+    def energy(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        theta: ArrayLike | None = None,
+        thetad: ArrayLike | None = None,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Vector] | None = None,
+    ) -> tuple[Any, Any, Any]:
+        """Energies `(kinetic, gravity, elastic)` [J]: numbers of one state, arrays of shape `(batch,)` of many."""
+
+    def jacobian(
+        self,
+        frame: str,
+        q: ArrayLike,
+        *,
+        axes: Literal["world", "local"] = "world",
+        out: _Matrix | None = None,
+    ) -> _Matrix:
+        """Jacobian of a link's frame, shape `(6, nv)` or `(batch, 6, nv)`, angular rows first."""
+
+    def rollout(
+        self,
+        q0: ArrayLike,
+        qd0: ArrayLike,
+        tau: ArrayLike,
+        dt: float,
+        *,
+        theta0: ArrayLike | None = None,
+        thetad0: ArrayLike | None = None,
+        steps: int | None = None,
+        integrator: Literal["semi_implicit_euler", "rk4"] = "semi_implicit_euler",
+        model: _Model | None = None,
+    ) -> tuple[_Blocks, _Blocks, _Blocks, _Blocks]:
+        """States `(q, qd, theta, thetad)` of many motions with fixed steps of `dt` [s], shape `(batch, steps + 1, n)` each."""
+
+    @property
+    def drives(self) -> dict[str, Drive]:
+        """The drives by the names of their joints."""
+
+    @staticmethod
+    def from_urdf(
+        text: str,
+        drives: str | None = None,
+        *,
+        floating: bool = False,
+        model: _Model | None = None,
+        set: Mapping[str, Any] | None = None,
+    ) -> Robot:
+        """Makes a robot from the text of a URDF and the text of a robot YAML with its drives."""
+
+    def with_(
+        self,
+        *,
+        stiffness: Mapping[str, float] | None = None,
+        damping: Mapping[str, float] | None = None,
+        ratio: Mapping[str, float] | None = None,
+        rotor_inertia: Mapping[str, float] | None = None,
+        friction: Mapping[str, Mapping[str, Any]] | None = None,
+        model: _Model | None = None,
+        gravity: Sequence[float] | None = None,
+        payload: Mapping[str, Any] | None = None,
+        set: Mapping[str, Any] | None = None,
+    ) -> Robot:
+        """A copy of the robot with other numbers, validated: of drives by the names of their joints, or of any key of its YAML."""
+
     def coriolis_matrices(
-        self, q: ArrayLike, qd: ArrayLike, thetad: ArrayLike | None = None, *, model: _Model | None = None
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        thetad: ArrayLike | None = None,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Matrix] | None = None,
     ) -> tuple[_Matrix, _Matrix, _Matrix]:
         """Blocks `(C, C1, C2)` of the Coriolis matrix in Christoffel form, shape `(nv, nv)` each."""
 
     def inertia_rates(
-        self, q: ArrayLike, qd: ArrayLike, *, model: _Model | None = None
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Matrix] | None = None,
     ) -> tuple[_Matrix, _Matrix]:
         """Time derivatives of `mass_matrix` and `coupling_matrix` along a motion, shape `(nv, nv)` each."""
 
     def bias(
-        self, q: ArrayLike, qd: ArrayLike, thetad: ArrayLike | None = None, *, model: _Model | None = None
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        thetad: ArrayLike | None = None,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Matrix] | None = None,
     ) -> tuple[_Vector, _Vector]:
         """What links and motors need at zero acceleration, beside friction, springs and loads, shape `(nv,)` each."""
 
-    def gravity_torques(self, q: ArrayLike) -> _Vector:
+    def gravity_torques(self, q: ArrayLike, *, out: _Matrix | None = None) -> _Vector:
         """Generalised forces that hold the links against gravity, shape `(nv,)`."""
 
     def forward_derivatives(

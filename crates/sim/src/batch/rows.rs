@@ -1,10 +1,9 @@
 //! Rows of an array, into lanes and back.
 
-use super::{LANES, Wide};
+use super::work::Work;
+use super::{Given, Real};
 use crate::error::Error;
-use gyroflex::model::SizeError;
-use rayon::slice::ChunksMut;
-use rayon::slice::ParallelSliceMut;
+use gyroflex::model::{Model, SizeError};
 
 /// Number of rows of an array of so many columns.
 pub(super) fn count(argument: &'static str, all: &[f64], columns: usize) -> Result<usize, Error> {
@@ -13,53 +12,63 @@ pub(super) fn count(argument: &'static str, all: &[f64], columns: usize) -> Resu
     Ok(rows)
 }
 
-/// An array that is read.
-#[derive(Clone, Copy)]
-pub(super) struct Rows<'a> {
-    all: &'a [f64],
-    columns: usize,
+/// Whether all that is given has so many rows, or one.
+pub(super) fn check<F: Real>(model: &Model<F>, rows: usize, given: &Given<F>) -> Result<(), Error> {
+    let (nq, nv) = (model.nq(), model.nv());
+    let Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext } = *given;
+    let over_joints = [
+        ("qd", qd),
+        ("theta", theta),
+        ("thetad", thetad),
+        ("qdd", qdd),
+        ("thetadd", thetadd),
+        ("tau", tau),
+        ("tau_ext", tau_ext),
+    ];
+    fits("q", q, nq, rows)?;
+    over_joints.into_iter().try_for_each(|(name, all)| if all.is_empty() { Ok(()) } else { fits(name, all, nv, rows) })
 }
 
-impl<'a> Rows<'a> {
-    pub(super) fn new(argument: &'static str, all: &'a [f64], columns: usize, rows: usize) -> Result<Self, Error> {
-        SizeError::check(argument, all.len(), rows * columns)?;
-        Ok(Self { all, columns })
-    }
+/// Whether an array has so many rows, or one.
+pub(super) fn fits<F>(name: &'static str, all: &[F], columns: usize, rows: usize) -> Result<(), Error> {
+    if all.len() == columns { Ok(()) } else { Ok(SizeError::check(name, all.len(), rows * columns)?) }
 }
 
-/// An array that is written.
-pub(super) struct RowsMut;
-
-impl RowsMut {
-    /// Its rows, in tasks of so many.
-    pub(super) fn tasks<'a>(
-        argument: &'static str,
-        all: &'a mut [f64],
-        columns: usize,
-        rows: usize,
-        task: usize,
-    ) -> Result<ChunksMut<'a, f64>, Error> {
-        SizeError::check(argument, all.len(), rows * columns)?;
-        Ok(all.par_chunks_mut(task * columns.max(1)))
-    }
+/// Fills the lanes with the states from `row` on.
+pub(super) fn load<F: Real>(given: Given<F>, row: usize, work: &mut Work<F::Lanes>) {
+    let Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext } = given;
+    gather(q, row, &mut work.q);
+    gather(qd, row, &mut work.qd);
+    gather(theta, row, &mut work.theta);
+    gather(thetad, row, &mut work.thetad);
+    gather(qdd, row, &mut work.qdd);
+    gather(thetadd, row, &mut work.thetadd);
+    gather(tau, row, &mut work.tau);
+    gather(tau_ext, row, &mut work.tau_ext);
 }
 
-/// Rows from `row` on, one a lane; beyond the last row it is repeated.
-pub(super) fn gather(from: Rows, row: usize, to: &mut [Wide]) {
-    let last = (from.all.len() / from.columns.max(1)).saturating_sub(1);
-    for lane in 0..LANES {
-        let start = (row + lane).min(last) * from.columns;
-        for (to, x) in to.iter_mut().zip(&from.all[start..start + from.columns]) {
-            to.0[lane] = *x;
+/// Rows from `row` on, one a lane; beyond the last row it is repeated. Nothing given leaves the zeros that are there.
+pub(super) fn gather<F: Real>(from: &[F], row: usize, to: &mut [F::Lanes]) {
+    gather_step(from, row, (0, 1), to);
+}
+
+/// The same of rows that have `steps` steps of `to.len()` numbers, of which step `k` is taken.
+pub(super) fn gather_step<F: Real>(from: &[F], row: usize, (k, steps): (usize, usize), to: &mut [F::Lanes]) {
+    let columns = to.len();
+    let Some(last) = from.len().checked_div(steps * columns).and_then(|rows| rows.checked_sub(1)) else { return };
+    for lane in 0..F::LANES {
+        let start = ((row + lane).min(last) * steps + k) * columns;
+        for (to, x) in to.iter_mut().zip(&from[start..start + columns]) {
+            F::each_mut(to)[lane] = *x;
         }
     }
 }
 
 /// Lanes into the rows from `row` on, as far as there are any.
-pub(super) fn scatter(from: &[Wide], to: &mut [f64], row: usize, columns: usize) {
-    for (lane, row) in to.chunks_mut(columns.max(1)).skip(row).take(LANES).enumerate() {
+pub(super) fn scatter<F: Real>(from: &[F::Lanes], to: &mut [F], row: usize) {
+    for (lane, row) in to.chunks_mut(from.len().max(1)).skip(row).take(F::LANES).enumerate() {
         for (to, from) in row.iter_mut().zip(from) {
-            *to = from.0[lane];
+            *to = F::each(from)[lane];
         }
     }
 }

@@ -1,0 +1,187 @@
+//! The drives of a robot, and copies of a robot with other numbers.
+
+use crate::arguments;
+use crate::errors;
+use crate::overrides::overrides;
+use crate::robot::PyRobot;
+use gyroflex::model::{DriveSpec, SpringSpec, TransmissionSpec};
+use gyroflex_sim::load::{LoadOptions, load, load_urdf_text};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyMapping};
+use std::path::PathBuf;
+
+/// Where a robot was read from.
+#[derive(Clone, Debug)]
+pub(crate) enum Origin {
+    File(PathBuf),
+    /// A URDF and the drives YAML, if any.
+    Text(String, Option<String>),
+}
+
+impl Origin {
+    /// Reads the robot, with the interpreter released.
+    pub(crate) fn read(self, py: Python<'_>, options: LoadOptions) -> PyResult<PyRobot> {
+        let robot = py.detach(|| match &self {
+            Self::File(path) => load(path, &options),
+            Self::Text(urdf, drives) => load_urdf_text(urdf, "robot.urdf", drives.as_deref(), &options),
+        });
+        PyRobot::new(py, robot.map_err(errors::raise)?, self, options)
+    }
+}
+
+/// The motor of a joint with its gear and transmission.
+#[pyclass(name = "Drive", module = "gyroflex", frozen)]
+#[derive(Clone, Copy)]
+pub(crate) struct PyDrive(DriveSpec);
+
+#[pymethods]
+impl PyDrive {
+    /// Inertia of the rotor about its spin axis, motor side [kg m²].
+    #[getter]
+    fn rotor_inertia(&self) -> f64 {
+        self.0.rotor.inertia
+    }
+
+    /// Rotor turns per joint turn, or rotor radians per metre.
+    #[getter]
+    fn ratio(&self) -> f64 {
+        self.0.gear_ratio
+    }
+
+    /// Stiffness of the transmission without deflection, link side [N m/rad or N/m]; `None` of a rigid one, or one given by a table.
+    #[getter]
+    fn stiffness(&self) -> Option<f64> {
+        match self.0.transmission {
+            TransmissionSpec::Elastic { spring: SpringSpec::Polynomial { stiffness, .. }, .. } => Some(stiffness),
+            _ => None,
+        }
+    }
+
+    /// Damping of the transmission, link side [N m s/rad or N s/m]; `None` of a rigid one.
+    #[getter]
+    fn damping(&self) -> Option<f64> {
+        match self.0.transmission {
+            TransmissionSpec::Elastic { damping, .. } => Some(damping),
+            TransmissionSpec::Rigid => None,
+        }
+    }
+
+    /// Friction on the motor side: `viscous` [N m s/rad], `coulomb` [N m] and `smoothing_velocity` [rad/s].
+    #[getter]
+    fn friction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let friction = PyDict::new(py);
+        friction.set_item("viscous", self.0.friction.viscous)?;
+        friction.set_item("coulomb", self.0.friction.coulomb)?;
+        friction.set_item("smoothing_velocity", self.0.friction.smoothing_velocity)?;
+        Ok(friction)
+    }
+
+    fn __repr__(&self) -> String {
+        let rigid = |x: Option<f64>| x.map_or_else(|| "None".to_owned(), |x| x.to_string());
+        let (stiffness, damping) = (rigid(self.stiffness()), rigid(self.damping()));
+        let (ratio, inertia) = (self.ratio(), self.rotor_inertia());
+        format!("<Drive: ratio {ratio}, rotor_inertia {inertia}, stiffness {stiffness}, damping {damping}>")
+    }
+}
+
+#[pymethods]
+impl PyRobot {
+    /// The drives by the names of their joints.
+    #[getter]
+    fn drives<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let drives = PyDict::new(py);
+        for (joint, body) in self.robot.joints.iter().zip(&self.robot.bodies) {
+            if let Some(drive) = body.drive {
+                drives.set_item(&joint.name, PyDrive(drive))?;
+            }
+        }
+        Ok(drives)
+    }
+
+    /// Makes a robot from the text of a URDF.
+    ///
+    /// Parameters
+    /// ----------
+    /// text
+    ///     The URDF.
+    /// drives
+    ///     The text of a robot YAML with its drives, whose `urdf` is not followed.
+    /// floating, model, set
+    ///     As those of `load`.
+    #[staticmethod]
+    #[pyo3(signature = (text, drives=None, *, floating=false, model=None, set=None))]
+    fn from_urdf(
+        py: Python<'_>,
+        text: String,
+        drives: Option<String>,
+        floating: bool,
+        model: Option<&str>,
+        set: Option<&Bound<'_, PyMapping>>,
+    ) -> PyResult<Self> {
+        let model = model.map(arguments::fidelity).transpose()?;
+        let options = LoadOptions { floating, model, overrides: overrides(set)?, ..LoadOptions::default() };
+        Origin::Text(text, drives).read(py, options)
+    }
+
+    /// A copy of the robot with other numbers, read from its files again and validated as they are.
+    ///
+    /// Parameters
+    /// ----------
+    /// stiffness, damping
+    ///     Of transmissions by the names of their joints, link side [N m/rad or N/m, N m s/rad or N s/m].
+    /// ratio
+    ///     Gear ratios by the names of the joints: rotor turns per joint turn.
+    /// rotor_inertia
+    ///     Inertias of rotors about their spin axes by the names of the joints, motor side [kg m²].
+    /// friction
+    ///     Friction by the names of the joints, as in the robot's YAML: `{"joint2": {"motor": {"coulomb": 0.1}}}`.
+    /// model
+    ///     The model used unless a call says otherwise.
+    /// gravity
+    ///     Acceleration of gravity in world axes, three numbers [m/s²].
+    /// payload
+    ///     A load on a link, as in the robot's YAML: `{"link": "tool", "mass": 2.0}`.
+    /// set
+    ///     Values of any other keys of the robot's YAML.
+    #[pyo3(signature = (*, stiffness=None, damping=None, ratio=None, rotor_inertia=None, friction=None, model=None, gravity=None, payload=None, set=None))]
+    #[expect(clippy::too_many_arguments, reason = "all of them may be left out")]
+    fn with_<'py>(
+        &self,
+        py: Python<'py>,
+        stiffness: Option<&Bound<'py, PyMapping>>,
+        damping: Option<&Bound<'py, PyMapping>>,
+        ratio: Option<&Bound<'py, PyMapping>>,
+        rotor_inertia: Option<&Bound<'py, PyMapping>>,
+        friction: Option<&Bound<'py, PyMapping>>,
+        model: Option<&str>,
+        gravity: Option<[f64; 3]>,
+        payload: Option<&Bound<'py, PyMapping>>,
+        set: Option<&Bound<'py, PyMapping>>,
+    ) -> PyResult<Self> {
+        let all = PyDict::new(py);
+        let by_joint = [
+            ("transmission.stiffness", stiffness),
+            ("transmission.damping", damping),
+            ("gear_ratio", ratio),
+            ("rotor.inertia", rotor_inertia),
+            ("friction", friction),
+        ];
+        for (key, values) in by_joint {
+            for item in values.map(|v| v.items()).transpose()?.iter().flatten() {
+                let (joint, value): (String, Bound<'_, PyAny>) = item.extract()?;
+                all.set_item(format!("drives.{joint}.{key}"), value)?;
+            }
+        }
+        if let Some(payload) = payload {
+            all.set_item("payload", payload)?;
+        }
+        if let Some(set) = set {
+            all.update(set)?;
+        }
+        let mut options = self.options.clone();
+        options.overrides.extend(&overrides(Some(all.as_any().cast::<PyMapping>()?))?);
+        options.model = model.map(arguments::fidelity).transpose()?.or(options.model);
+        options.gravity = gravity.or(options.gravity);
+        self.origin.clone().read(py, options)
+    }
+}

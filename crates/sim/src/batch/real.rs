@@ -1,0 +1,35 @@
+//! The numbers that arrays hold, and the lanes they are computed in.
+
+use gyroflex::{Lanes, Scalar};
+
+/// `f32` or `f64`.
+pub trait Real: Scalar<Param = Self> + Send + Sync + 'static {
+    /// Several states side by side.
+    type Lanes: Scalar<Param = Self> + Send;
+    /// How many: they fill a register of AVX-512, or two of AVX2.
+    const LANES: usize;
+
+    /// The number of each state.
+    fn each(lanes: &Self::Lanes) -> &[Self];
+
+    /// The number of each state.
+    fn each_mut(lanes: &mut Self::Lanes) -> &mut [Self];
+}
+
+macro_rules! real {
+    ($float:ident, $lanes:literal) => {
+        impl Real for $float {
+            type Lanes = Lanes<$float, $lanes>;
+            const LANES: usize = $lanes;
+
+            fn each(lanes: &Self::Lanes) -> &[Self] {
+                &lanes.0
+            }
+            fn each_mut(lanes: &mut Self::Lanes) -> &mut [Self] {
+                &mut lanes.0
+            }
+        }
+    };
+}
+real!(f64, 8);
+real!(f32, 16);
