@@ -36,6 +36,7 @@ fn driver(function: &Function, split: &Split, style: Style) -> String {
             prediction.ideal_speed_up()
         ),
         format!("chain of operations alone takes {:.0} % of the whole.", 100.0 * prediction.critical_path / prediction.whole.max(1.0)),
+        "Call it on a thread of rayon's pool (`ThreadPool::install`): any other thread sleeps until it is woken.".to_owned(),
     ]);
     let mut text = marked(&lines, "/// ");
     text.push_str("#[rustfmt::skip]\n#[allow(dead_code, clippy::all, clippy::pedantic)]\n");
