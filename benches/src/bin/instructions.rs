@@ -84,9 +84,5 @@ fn main() -> std::io::Result<()> {
     }
     constrained::<f64>("f64");
     cases::<f64>("tree14", &generated(Shape::Tree, 14), Fidelity::Complete, "f64", 2);
-    #[cfg(feature = "robots")]
-    for fidelity in Fidelity::ALL {
-        cases::<f64>("iiwa14", &gyroflex_benches::robot("iiwa14"), fidelity, "f64", 1);
-    }
     Ok(())
 }

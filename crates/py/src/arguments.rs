@@ -91,6 +91,17 @@ impl Layout {
         arrays::read_without(name, value, if self.floating { ROOT } else { 0 }, self.given(value, out), VELOCITIES)
     }
 
+    /// Generalised forces from outside; zeros for none.
+    pub(crate) fn load_or_none(&self, value: Option<&Bound<'_, PyAny>>, room: &mut [f64]) -> PyResult<()> {
+        match value {
+            Some(value) => self.forces("tau_ext", value, room),
+            None => {
+                room.fill(0.0);
+                Ok(())
+            }
+        }
+    }
+
     /// Generalised forces from outside as the algorithms take them: an empty slice for none.
     pub(crate) fn load<'w>(&self, value: Option<&Bound<'_, PyAny>>, room: &'w mut [f64]) -> PyResult<&'w [f64]> {
         match value {

@@ -4,6 +4,8 @@ use crate::arguments::{Layout, ROOT};
 use crate::arrays::{numbers, text_of};
 use crate::errors;
 use crate::robot::PyRobot;
+use crate::workspace::Workspace;
+use gyroflex_sim::Dynamics;
 use gyroflex_sim::batch::{self, Algorithm, Given, Real};
 use gyroflex_sim::eval::unit_quaternion;
 use numpy::{
@@ -12,6 +14,7 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyEllipsis, PySequence, PyTuple};
+use rayon::prelude::*;
 
 /// When an array must be given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,7 +150,7 @@ pub(crate) fn all_given(arguments: &[Argument<'_, '_>], elastic: bool) -> PyResu
 }
 
 /// A result: its name and the shape it has of one state.
-type Shape = (&'static str, Vec<usize>);
+pub(crate) type Shape = (&'static str, Vec<usize>);
 
 /// The results of an algorithm that Python sees, the first ones of what it computes.
 fn shapes(algorithm: Algorithm, nv: usize) -> Vec<Shape> {
@@ -227,15 +230,96 @@ impl PyRobot {
             write(&results, |slices| {
                 let model = w.dynamics.owned_model();
                 py.detach(|| batch::evaluate(model, algorithm, rows, states, slices)).map_err(errors::raise)?;
-                shapes.iter().zip(slices.iter()).try_for_each(|((name, _), numbers)| {
-                    let bad = numbers.iter().position(|x| !x.is_finite());
-                    let row = |i: usize| i / (numbers.len() / rows.max(1)).max(1);
-                    bad.map_or(Ok(()), |i| Err(errors::overflow(&format!("{name}[{}]", row(i)))))
-                })
+                all_finite(&shapes, slices, batch.rows)
             })
         })?;
         together(py, results.into_iter().map(Bound::into_any).collect())
     }
+
+    /// Runs what has no lanes over what is given: one state as `read` finds it in the workspace, or a batch row by row in float64
+    /// on all cores. `shapes` are those of the results of one state.
+    #[expect(clippy::too_many_arguments, reason = "they are the call, what it takes and what it gives")]
+    pub(crate) fn by_rows<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<&str>,
+        arguments: &[Argument<'_, 'py>],
+        shapes: &[Shape],
+        out: Option<&Bound<'py, PyAny>>,
+        read: impl FnOnce(&mut Workspace) -> PyResult<()>,
+        one: impl Fn(&mut Dynamics, Given<f64>, &mut [&mut [f64]]) -> Result<(), gyroflex_sim::Error> + Sync,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let batch = Batch::of(arguments)?.filter(|batch| batch.rows.is_some());
+        let rows = batch.as_ref().and_then(|batch| batch.rows);
+        let shapes: Vec<Shape> = shapes
+            .iter()
+            .map(|(name, shape)| (*name, rows.into_iter().chain(shape.iter().copied()).collect()))
+            .collect();
+        let results = results::<f64>(py, &shapes, out)?;
+        self.with(model, |w| {
+            let Some(batch) = batch else {
+                read(w)?;
+                return write(&results, |slices| {
+                    let Workspace { dynamics, q, qd, theta, thetad, qdd, thetadd, tau, tau_ext, .. } = w;
+                    one(dynamics, Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext }, slices)
+                        .map_err(errors::raise)?;
+                    all_finite(&shapes, slices, None)
+                });
+            };
+            all_given(arguments, w.elastic)?;
+            let given: Vec<(&str, Numbers<'py, f64>)> = batch
+                .arrays
+                .iter()
+                .map(|(name, array)| Ok((*name, columns(&self.layout, name, array)?)))
+                .collect::<PyResult<_>>()?;
+            let arrays: Vec<(&str, &[f64])> = given.iter().map(|(name, numbers)| (*name, numbers.slice())).collect();
+            let zeros = vec![0.0; self.layout.nv];
+            let row = |k: usize| {
+                let of = |name: &str, width: usize| match arrays.iter().find(|(n, _)| *n == name) {
+                    None => &zeros[..],
+                    Some((_, all)) if all.len() == width => all,
+                    Some((_, all)) => &all[k * width..][..width],
+                };
+                let vector = |name: &str| of(name, self.layout.nv);
+                Given {
+                    q: of("q", self.layout.nq),
+                    qd: vector("qd"),
+                    theta: vector("theta"),
+                    thetad: vector("thetad"),
+                    qdd: vector("qdd"),
+                    thetadd: vector("thetadd"),
+                    tau: vector("tau"),
+                    tau_ext: vector("tau_ext"),
+                }
+            };
+            write(&results, |slices| {
+                let count = rows.unwrap_or(1);
+                let mut tasks: Vec<Vec<&mut [f64]>> = (0..count).map(|_| Vec::new()).collect();
+                for slice in slices.iter_mut() {
+                    let width = slice.len() / count.max(1);
+                    tasks.iter_mut().zip(slice.chunks_mut(width.max(1))).for_each(|(task, row)| task.push(row));
+                }
+                let dynamics = &w.dynamics;
+                let run =
+                    |dynamics: &mut Dynamics, (k, mut out): (usize, Vec<&mut [f64]>)| one(dynamics, row(k), &mut out);
+                py.detach(|| tasks.into_par_iter().enumerate().try_for_each_init(|| dynamics.clone(), run))
+                    .map_err(errors::raise)?;
+                all_finite(&shapes, slices, rows)
+            })
+        })?;
+        together(py, results.into_iter().map(Bound::into_any).collect())
+    }
+}
+
+/// Nothing that is not a number leaves this house; says which result of which row would.
+fn all_finite<F: Float>(shapes: &[Shape], results: &[&mut [F]], rows: Option<usize>) -> PyResult<()> {
+    shapes.iter().zip(results).try_for_each(|((name, _), numbers)| {
+        let Some(i) = numbers.iter().position(|x| !x.is_finite()) else { return Ok(()) };
+        Err(errors::overflow(&match rows {
+            Some(rows) => format!("{name}[{}]", i / (numbers.len() / rows.max(1)).max(1)),
+            None => (*name).to_owned(),
+        }))
+    })
 }
 
 /// One result by itself, several as a tuple.

@@ -1,17 +1,17 @@
 //! How accelerations and torques change with the motion and with the robot's parameters.
 
-use crate::arrays::{Matrix, Vector, shaped, vector};
+use crate::arrays::{Vector, vector};
+use crate::batch::{Argument, Need};
 use crate::errors;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
 use gyroflex::dynamics::{
     Acceleration, External, Forward, ForwardDerivatives, InverseDerivatives, PARAMETERS, Regressor, State,
 };
+use gyroflex_sim::Dynamics;
+use gyroflex_sim::batch::Given;
 use gyroflex_sim::bending::RIGID;
-use numpy::PyArray3;
 use pyo3::prelude::*;
-
-type Blocks<'py> = Bound<'py, PyArray3<f64>>;
 
 #[pymethods]
 impl PyRobot {
@@ -22,9 +22,9 @@ impl PyRobot {
     /// Returns
     /// -------
     /// (dqdd, dthetadd)
-    ///     Shape `(5, nv, nv)` each: matrices by `q, qd, theta, thetad, tau`, in this order. A floating root's pose counts by a
-    ///     small motion in its own frame, angular first.
-    #[pyo3(signature = (q, qd, theta=None, thetad=None, tau=None, *, model=None, tau_ext=None))]
+    ///     Shape `(5, nv, nv)` or `(batch, 5, nv, nv)` each: matrices by `q, qd, theta, thetad, tau`, in this order. A floating root's
+    ///     pose counts by a small motion in its own frame, angular first.
+    #[pyo3(signature = (q, qd, theta=None, thetad=None, tau=None, *, model=None, tau_ext=None, out=None))]
     #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
     fn forward_derivatives<'py>(
         &self,
@@ -36,25 +36,36 @@ impl PyRobot {
         tau: Option<&Bound<'py, PyAny>>,
         model: Option<&str>,
         tau_ext: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Blocks<'py>, Blocks<'py>)> {
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let nv = self.layout.nv;
-        self.with(model, |w| {
+        let read = |w: &mut Workspace| {
             self.layout.state(w, q, qd, theta, thetad)?;
             let Some(tau) = tau else {
                 return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
             };
-            self.layout.forces("tau", tau, &mut w.first)?;
-            let Workspace { dynamics, q, qd, theta, thetad, first: tau, tau_ext: room, out, .. } = w;
-            let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
-            let [qdd, thetadd, tau_j] = out;
+            self.layout.forces("tau", tau, &mut w.tau)?;
+            self.layout.load_or_none(tau_ext, &mut w.tau_ext)
+        };
+        let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
+            let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![0.0; nv]);
             let [mut by_qdd, mut by_thetadd] = [(); 2].map(|()| vec![0.0; 5 * nv * nv]);
+            let value = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
             let derivatives = ForwardDerivatives { qdd: &mut by_qdd, thetadd: &mut by_thetadd };
-            let value = Forward { qdd, thetadd, tau_j };
-            dynamics
-                .forward_derivatives(State { q, qd, theta, thetad }, tau, ext, value, derivatives)
-                .map_err(errors::raise)?;
-            Ok((blocks(py, "dqdd", &by_qdd, 5, nv)?, blocks(py, "dthetadd", &by_thetadd, 5, nv)?))
-        })
+            dynamics.forward_derivatives(state(&s), s.tau, load(&s), value, derivatives)?;
+            out.iter_mut().zip([by_qdd, by_thetadd]).for_each(|(out, rows)| blocks(&rows, 5, nv, out));
+            Ok(())
+        };
+        let arguments = [
+            ("q", Some(q), Need::Always),
+            ("qd", Some(qd), Need::Always),
+            ("theta", theta, Need::Elastic),
+            ("thetad", thetad, Need::Elastic),
+            ("tau", tau, Need::Always),
+            ("tau_ext", tau_ext, Need::Never),
+        ];
+        let shapes = ["dqdd", "dthetadd"].map(|name| (name, vec![5, nv, nv]));
+        self.by_rows(py, model, &arguments, &shapes, out, read, one)
     }
 
     /// How the torques of `inverse_dynamics` change with the motion.
@@ -64,9 +75,9 @@ impl PyRobot {
     /// Returns
     /// -------
     /// (dtau_j, dtau)
-    ///     Shape `(6, nv, nv)` each: matrices by `q, qd, qdd, theta, thetad, thetadd`, in this order. A floating root's pose counts
-    ///     by a small motion in its own frame, angular first.
-    #[pyo3(signature = (q, qd, qdd, theta=None, thetad=None, thetadd=None, *, model=None, tau_ext=None))]
+    ///     Shape `(6, nv, nv)` or `(batch, 6, nv, nv)` each: matrices by `q, qd, qdd, theta, thetad, thetadd`, in this order. A floating
+    ///     root's pose counts by a small motion in its own frame, angular first.
+    #[pyo3(signature = (q, qd, qdd, theta=None, thetad=None, thetadd=None, *, model=None, tau_ext=None, out=None))]
     #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
     fn inverse_derivatives<'py>(
         &self,
@@ -79,21 +90,23 @@ impl PyRobot {
         thetadd: Option<&Bound<'py, PyAny>>,
         model: Option<&str>,
         tau_ext: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Blocks<'py>, Blocks<'py>)> {
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let nv = self.layout.nv;
-        self.with(model, |w| {
-            self.layout.state(w, q, qd, theta, thetad)?;
-            self.layout.velocities("qdd", qdd, &mut w.first)?;
-            self.layout.motors("thetadd", thetadd, w.elastic, &mut w.second)?;
-            let Workspace { dynamics, q, qd, theta, thetad, first: qdd, second: thetadd, tau_ext: room, .. } = w;
-            let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
+        let read = |w: &mut Workspace| {
+            self.motion_of(w, [q, qd, qdd], [theta, thetad, thetadd])?;
+            self.layout.load_or_none(tau_ext, &mut w.tau_ext)
+        };
+        let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             let [mut tau_j, mut tau] = [(); 2].map(|()| vec![0.0; 6 * nv * nv]);
-            let out = InverseDerivatives { tau_j: &mut tau_j, tau: &mut tau };
-            dynamics
-                .inverse_derivatives(State { q, qd, theta, thetad }, Acceleration { qdd, thetadd }, ext, out)
-                .map_err(errors::raise)?;
-            Ok((blocks(py, "dtau_j", &tau_j, 6, nv)?, blocks(py, "dtau", &tau, 6, nv)?))
-        })
+            let derivatives = InverseDerivatives { tau_j: &mut tau_j, tau: &mut tau };
+            dynamics.inverse_derivatives(state(&s), acceleration(&s), load(&s), derivatives)?;
+            out.iter_mut().zip([tau_j, tau]).for_each(|(out, rows)| blocks(&rows, 6, nv, out));
+            Ok(())
+        };
+        let arguments = motion_arguments([q, qd, qdd], [theta, thetad, thetadd], tau_ext);
+        let shapes = ["dtau_j", "dtau"].map(|name| (name, vec![6, nv, nv]));
+        self.by_rows(py, model, &arguments, &shapes, out, read, one)
     }
 
     /// Inverse dynamics as matrices that the robot's `parameters` enter linearly; loads from outside are left out.
@@ -103,10 +116,10 @@ impl PyRobot {
     /// Returns
     /// -------
     /// (link, transmission, motor)
-    ///     Shape `(nv, 20 bodies)` each. With `p = robot.parameters()`, `link @ p` is the torque that the links need of the
-    ///     transmissions, `transmission @ p` the one that those exert, and `motor @ p` what a motor must exert beside its transmission's
-    ///     torque, seen from the link side.
-    #[pyo3(signature = (q, qd, qdd, theta=None, thetad=None, thetadd=None, *, model=None))]
+    ///     Shape `(nv, 20 bodies)` or `(batch, nv, 20 bodies)` each. With `p = robot.parameters()`, `link @ p` is the torque that the
+    ///     links need of the transmissions, `transmission @ p` the one that those exert, and `motor @ p` what a motor must exert beside its
+    ///     transmission's torque, seen from the link side.
+    #[pyo3(signature = (q, qd, qdd, theta=None, thetad=None, thetadd=None, *, model=None, out=None))]
     #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
     fn regressor<'py>(
         &self,
@@ -118,21 +131,18 @@ impl PyRobot {
         thetad: Option<&Bound<'py, PyAny>>,
         thetadd: Option<&Bound<'py, PyAny>>,
         model: Option<&str>,
-    ) -> PyResult<(Matrix<'py>, Matrix<'py>, Matrix<'py>)> {
-        self.with(model, |w| {
-            self.layout.state(w, q, qd, theta, thetad)?;
-            self.layout.velocities("qdd", qdd, &mut w.first)?;
-            self.layout.motors("thetadd", thetadd, w.elastic, &mut w.second)?;
-            let Workspace { dynamics, q, qd, theta, thetad, first: qdd, second: thetadd, poses, .. } = w;
-            let width = PARAMETERS * poses.len();
-            let [mut link, mut transmission, mut motor] = [(); 3].map(|()| vec![0.0; self.layout.nv * width]);
-            let out = Regressor { link: &mut link, transmission: &mut transmission, motor: &mut motor };
-            dynamics
-                .regressor(State { q, qd, theta, thetad }, Acceleration { qdd, thetadd }, out)
-                .map_err(errors::raise)?;
-            let of = |name, numbers: &[f64]| shaped(py, name, numbers, [self.layout.nv, width]);
-            Ok((of("link", &link)?, of("transmission", &transmission)?, of("motor", &motor)?))
-        })
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let width = PARAMETERS * self.robot.joints.len();
+        let read = |w: &mut Workspace| self.motion_of(w, [q, qd, qdd], [theta, thetad, thetadd]);
+        let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
+            // As many as there are shapes.
+            let [link, transmission, motor] = out else { return Ok(()) };
+            dynamics.regressor(state(&s), acceleration(&s), Regressor { link, transmission, motor })
+        };
+        let arguments = motion_arguments([q, qd, qdd], [theta, thetad, thetadd], None);
+        let shapes = ["link", "transmission", "motor"].map(|name| (name, vec![self.layout.nv, width]));
+        self.by_rows(py, model, &arguments, &shapes, out, read, one)
     }
 
     /// The parameters that `regressor` belongs to, twenty for each body, shape `(20 bodies,)`.
@@ -147,9 +157,50 @@ impl PyRobot {
     }
 }
 
-/// Square blocks side by side, one behind the other.
-fn blocks<'py>(py: Python<'py>, name: &str, rows: &[f64], count: usize, nv: usize) -> PyResult<Blocks<'py>> {
+impl PyRobot {
+    /// Positions, velocities and accelerations of joints and motors.
+    fn motion_of(
+        &self,
+        w: &mut Workspace,
+        [q, qd, qdd]: [&Bound<'_, PyAny>; 3],
+        [theta, thetad, thetadd]: [Option<&Bound<'_, PyAny>>; 3],
+    ) -> PyResult<()> {
+        self.layout.state(w, q, qd, theta, thetad)?;
+        self.layout.velocities("qdd", qdd, &mut w.qdd)?;
+        self.layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)
+    }
+}
+
+fn motion_arguments<'a, 'py>(
+    [q, qd, qdd]: [&'a Bound<'py, PyAny>; 3],
+    [theta, thetad, thetadd]: [Option<&'a Bound<'py, PyAny>>; 3],
+    tau_ext: Option<&'a Bound<'py, PyAny>>,
+) -> [Argument<'a, 'py>; 7] {
+    [
+        ("q", Some(q), Need::Always),
+        ("qd", Some(qd), Need::Always),
+        ("qdd", Some(qdd), Need::Always),
+        ("theta", theta, Need::Elastic),
+        ("thetad", thetad, Need::Elastic),
+        ("thetadd", thetadd, Need::Elastic),
+        ("tau_ext", tau_ext, Need::Never),
+    ]
+}
+
+fn state<'a>(s: &Given<'a, f64>) -> State<'a, f64> {
+    State { q: s.q, qd: s.qd, theta: s.theta, thetad: s.thetad }
+}
+
+fn acceleration<'a>(s: &Given<'a, f64>) -> Acceleration<'a, f64> {
+    Acceleration { qdd: s.qdd, thetadd: s.thetadd }
+}
+
+fn load<'a>(s: &Given<'a, f64>) -> External<'a, f64> {
+    External { tau: s.tau_ext, wrenches: &[] }
+}
+
+/// Square blocks side by side become blocks one behind the other.
+fn blocks(rows: &[f64], count: usize, nv: usize, out: &mut [f64]) {
     let entry = |at: usize| rows[(at / nv % nv) * count * nv + at / (nv * nv) * nv + at % nv];
-    let numbers: Vec<f64> = (0..rows.len()).map(entry).collect();
-    shaped(py, name, &numbers, [count, nv, nv])
+    out.iter_mut().enumerate().for_each(|(at, to)| *to = entry(at));
 }

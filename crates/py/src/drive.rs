@@ -29,6 +29,13 @@ impl Origin {
     }
 }
 
+/// The argument `drives`.
+#[derive(FromPyObject)]
+enum Drives<'py> {
+    Yaml(String),
+    ByJoint(Bound<'py, PyMapping>),
+}
+
 /// The motor of a joint with its gear and transmission.
 #[pyclass(name = "Drive", module = "gyroflex", frozen)]
 #[derive(Clone, Copy)]
@@ -98,29 +105,72 @@ impl PyRobot {
         Ok(drives)
     }
 
-    /// Makes a robot from the text of a URDF.
+    /// Makes a robot from a URDF.
     ///
     /// Parameters
     /// ----------
-    /// text
-    ///     The URDF.
+    /// urdf
+    ///     The URDF, or the path of its file.
     /// drives
-    ///     The text of a robot YAML with its drives, whose `urdf` is not followed.
+    ///     The drives by the names of their joints, as `drives` of a robot's YAML; or the text of such a YAML, whose `urdf` is not
+    ///     followed.
     /// floating, model, set
     ///     As those of `load`.
     #[staticmethod]
-    #[pyo3(signature = (text, drives=None, *, floating=false, model=None, set=None))]
+    #[pyo3(signature = (urdf, drives=None, *, floating=false, model=None, set=None))]
     fn from_urdf(
         py: Python<'_>,
-        text: String,
-        drives: Option<String>,
+        urdf: PathBuf,
+        drives: Option<Drives<'_>>,
         floating: bool,
         model: Option<&str>,
         set: Option<&Bound<'_, PyMapping>>,
     ) -> PyResult<Self> {
         let model = model.map(arguments::fidelity).transpose()?;
-        let options = LoadOptions { floating, model, overrides: overrides(set)?, ..LoadOptions::default() };
-        Origin::Text(text, drives).read(py, options)
+        let mut options = LoadOptions { floating, model, ..LoadOptions::default() };
+        let yaml = match drives {
+            Some(Drives::Yaml(text)) => Some(text),
+            Some(Drives::ByJoint(drives)) => {
+                let keys = PyDict::new(py);
+                keys.set_item("drives", drives)?;
+                options.overrides = overrides(Some(keys.as_any().cast::<PyMapping>()?))?;
+                None
+            }
+            None => None,
+        };
+        options.overrides.extend(&overrides(set)?);
+        let origin = match urdf.to_str() {
+            Some(text) if text.contains('<') => Origin::Text(text.to_owned(), yaml),
+            _ if yaml.is_none() => Origin::File(urdf),
+            _ => {
+                let text = std::fs::read_to_string(&urdf);
+                let refuse = |e: std::io::Error| errors::file(&urdf, format!("cannot be read: {e}"), "check the path");
+                Origin::Text(text.map_err(refuse)?, yaml)
+            }
+        };
+        origin.read(py, options)
+    }
+
+    /// Makes a robot from links, joints and drives given one by one.
+    ///
+    /// Parameters
+    /// ----------
+    /// builder
+    ///     A `RobotBuilder`.
+    /// floating, model, set
+    ///     As those of `load`.
+    #[staticmethod]
+    #[pyo3(signature = (builder, *, floating=false, model=None, set=None))]
+    fn from_builder<'py>(
+        py: Python<'py>,
+        builder: &Bound<'py, PyAny>,
+        floating: bool,
+        model: Option<&str>,
+        set: Option<&Bound<'py, PyMapping>>,
+    ) -> PyResult<Self> {
+        let urdf = builder.call_method0("urdf")?.extract()?;
+        let drives = builder.getattr("drives")?.cast_into::<PyMapping>()?;
+        Self::from_urdf(py, urdf, Some(Drives::ByJoint(drives)), floating, model, set)
     }
 
     /// A copy of the robot with other numbers, read from its files again and validated as they are.

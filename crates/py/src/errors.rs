@@ -3,6 +3,7 @@
 use gyroflex_sim::error::{Error, ErrorKind, Warning};
 use pyo3::prelude::*;
 use std::ffi::CString;
+use std::path::Path;
 
 /// The classes of `python/gyroflex/errors.py`.
 mod classes {
@@ -37,6 +38,11 @@ pub(crate) fn raise(error: impl Into<Error>) -> PyErr {
 /// An argument whose value is not allowed.
 pub(crate) fn argument(name: &str, problem: impl Into<String>, remedy: impl Into<String>) -> PyErr {
     classes::ArgumentError::new_err((problem.into(), format!("argument `{name}`"), "", remedy.into()))
+}
+
+/// A file that cannot be used.
+pub(crate) fn file(path: &Path, problem: impl Into<String>, remedy: impl Into<String>) -> PyErr {
+    classes::FileError::new_err((problem.into(), "", path.display().to_string(), remedy.into()))
 }
 
 /// An array argument of the wrong shape.

@@ -1,12 +1,14 @@
 //! The dynamics that a frame feels.
 
 use crate::arguments;
-use crate::arrays::{matrix, shaped, vector};
+use crate::batch::Need;
 use crate::errors;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
 use gyroflex::dynamics::{Frame, OperationalSpace, Rotation, State, Task};
 use gyroflex::spatial::{Transform, Vec3};
+use gyroflex_sim::Dynamics;
+use gyroflex_sim::batch::Given;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -19,7 +21,7 @@ impl PyRobot {
     /// frame
     ///     Name of a moving link of the URDF.
     /// q, qd
-    ///     Joint positions, shape `(nq,)`, and velocities, shape `(nv,)` [rad or m, per s].
+    ///     Joint positions, shape `(nq,)`, and velocities, shape `(nv,)` [rad or m, per s]; or with a batch as the first axis.
     /// thetad
     ///     Motor velocities seen from the link side, shape `(nv,)`. Needed if the model has elastic joints.
     /// directions
@@ -38,7 +40,7 @@ impl PyRobot {
     /// dict
     ///     With `m` directions: `jacobian` `(m, nv)`, `bias_acceleration` `J̇ q̇` `(m,)`, `inertia` `Λ` `(m, m)`, `inverse` `J̄`
     ///     `(nv, m)`, `velocity_force` `μ` and `gravity_force` `p` `(m,)`, and the singular values `smallest`, `largest` of the Jacobian and
-    ///     `representation`, the smallest of the angles' rates.
+    ///     `representation`, the smallest of the angles' rates. Of a batch all of them with the batch as the first axis.
     #[pyo3(signature = (frame, q, qd, thetad=None, *, directions=None, rotation="geometric", point=None, threshold=1e-6, model=None))]
     #[expect(clippy::too_many_arguments, reason = "most of them may be left out")]
     fn operational_space<'py>(
@@ -73,34 +75,47 @@ impl PyRobot {
             Transform { pos: link.placement.pos + link.placement.rotation() * Vec3::from(point), ..link.placement };
         let task = Task { frame: Frame { body, placement }, directions: &directions, rotation, threshold };
         let (nv, m) = (self.layout.nv, directions.len());
-        self.with(model, |w| {
-            self.motion(w, q, qd, thetad)?;
-            let [mut jacobian, mut inverse] = [(); 2].map(|()| vec![0.0; m * nv]);
-            let [mut bias, mut mu, mut p] = [(); 3].map(|()| vec![0.0; m]);
-            let mut inertia = vec![0.0; m * m];
-            let Workspace { dynamics, q, qd, theta, thetad, .. } = w;
-            let out = OperationalSpace {
-                jacobian: &mut jacobian,
-                bias_acceleration: &mut bias,
-                inertia: &mut inertia,
-                inverse: &mut inverse,
-                velocity_force: &mut mu,
-                gravity_force: &mut p,
+        let read = |w: &mut Workspace| self.motion(w, q, qd, thetad);
+        let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
+            // As many as there are names.
+            let [jacobian, bias, inertia, inverse, mu, p, smallest, largest, representation] = out else {
+                return Ok(());
             };
-            let values =
-                dynamics.operational_space(State { q, qd, theta, thetad }, task, out).map_err(errors::raise)?;
-            let answer = PyDict::new(py);
-            answer.set_item("jacobian", shaped(py, "jacobian", &jacobian, [m, nv])?)?;
-            answer.set_item("bias_acceleration", vector(py, "bias_acceleration", &bias)?)?;
-            answer.set_item("inertia", matrix(py, "inertia", &inertia, m)?)?;
-            answer.set_item("inverse", shaped(py, "inverse", &inverse, [nv, m])?)?;
-            answer.set_item("velocity_force", vector(py, "velocity_force", &mu)?)?;
-            answer.set_item("gravity_force", vector(py, "gravity_force", &p)?)?;
-            answer.set_item("smallest", values.smallest)?;
-            answer.set_item("largest", values.largest)?;
-            answer.set_item("representation", values.representation)?;
-            Ok(answer)
-        })
+            let out = OperationalSpace {
+                jacobian,
+                bias_acceleration: bias,
+                inertia,
+                inverse,
+                velocity_force: mu,
+                gravity_force: p,
+            };
+            let state = State { q: s.q, qd: s.qd, theta: s.theta, thetad: s.thetad };
+            let values = dynamics.operational_space(state, task, out)?;
+            (smallest[0], largest[0], representation[0]) = (values.smallest, values.largest, values.representation);
+            Ok(())
+        };
+        let arguments =
+            [("q", Some(q), Need::Always), ("qd", Some(qd), Need::Always), ("thetad", thetad, Need::Elastic)];
+        let shapes = [
+            ("jacobian", vec![m, nv]),
+            ("bias_acceleration", vec![m]),
+            ("inertia", vec![m, m]),
+            ("inverse", vec![nv, m]),
+            ("velocity_force", vec![m]),
+            ("gravity_force", vec![m]),
+            ("smallest", vec![]),
+            ("largest", vec![]),
+            ("representation", vec![]),
+        ];
+        let found = self.by_rows(py, model, &arguments, &shapes, None, read, one)?;
+        let answer = PyDict::new(py);
+        for ((name, _), array) in shapes.iter().zip(found.try_iter()?) {
+            let array = array?;
+            // A number by itself is a number, not an array of one.
+            let is_number = array.getattr("ndim")?.extract::<usize>()? == 0;
+            answer.set_item(name, if is_number { array.call_method0("item")? } else { array })?;
+        }
+        Ok(answer)
     }
 }
 

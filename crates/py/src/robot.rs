@@ -190,8 +190,8 @@ impl PyRobot {
                 let Some(tau) = tau else {
                     return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
                 };
-                self.layout.forces("tau", tau, &mut w.first)?;
-                let Workspace { dynamics, q, qd, theta, thetad, first: tau, tau_ext: room, out, .. } = w;
+                self.layout.forces("tau", tau, &mut w.tau)?;
+                let Workspace { dynamics, q, qd, theta, thetad, tau, tau_ext: room, out, .. } = w;
                 let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
                 let [qdd, thetadd, tau_j] = out;
                 dynamics
@@ -247,11 +247,9 @@ impl PyRobot {
         let single = || {
             self.with(model, |w| {
                 self.layout.state(w, q, qd, theta, thetad)?;
-                self.layout.velocities("qdd", qdd, &mut w.first)?;
-                self.layout.motors("thetadd", thetadd, w.elastic, &mut w.second)?;
-                let Workspace {
-                    dynamics, q, qd, theta, thetad, first: qdd, second: thetadd, tau_ext: room, out, ..
-                } = w;
+                self.layout.velocities("qdd", qdd, &mut w.qdd)?;
+                self.layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)?;
+                let Workspace { dynamics, q, qd, theta, thetad, qdd, thetadd, tau_ext: room, out, .. } = w;
                 let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
                 let [tau_j, tau, _] = out;
                 dynamics

@@ -17,10 +17,9 @@ pub(crate) struct Workspace {
     pub(crate) qd: Vec<f64>,
     pub(crate) theta: Vec<f64>,
     pub(crate) thetad: Vec<f64>,
-    /// `tau` going forward; `qdd` going backward.
-    pub(crate) first: Vec<f64>,
-    /// `thetadd` going backward.
-    pub(crate) second: Vec<f64>,
+    pub(crate) qdd: Vec<f64>,
+    pub(crate) thetadd: Vec<f64>,
+    pub(crate) tau: Vec<f64>,
     pub(crate) tau_ext: Vec<f64>,
     /// Up to three results over the joints.
     pub(crate) out: [Vec<f64>; 3],
@@ -42,8 +41,9 @@ impl Workspace {
             qd: zeros(),
             theta: zeros(),
             thetad: zeros(),
-            first: zeros(),
-            second: zeros(),
+            qdd: zeros(),
+            thetadd: zeros(),
+            tau: zeros(),
             tau_ext: zeros(),
             out: [zeros(), zeros(), zeros()],
             matrix: vec![0.0; nv * nv],

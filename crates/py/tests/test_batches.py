@@ -36,6 +36,15 @@ CALLS: dict[str, tuple[Call, tuple[str, ...]]] = {
     "energy": (gyroflex.Robot.energy, ("q", "qd", "theta", "thetad")),
     "placement": (lambda robot, **a: robot.placement("tool", **a), ("q",)),
     "jacobian": (lambda robot, **a: robot.jacobian("tool", **a), ("q",)),
+    "forward_derivatives": (
+        gyroflex.Robot.forward_derivatives,
+        ("q", "qd", "theta", "thetad", "tau", "tau_ext"),
+    ),
+    "inverse_derivatives": (
+        gyroflex.Robot.inverse_derivatives,
+        ("q", "qd", "qdd", "theta", "thetad", "thetadd", "tau_ext"),
+    ),
+    "regressor": (gyroflex.Robot.regressor, ("q", "qd", "qdd", "theta", "thetad", "thetadd")),
 }
 
 
@@ -253,3 +262,33 @@ def test_a_copy_that_cannot_be_is_refused(arm: gyroflex.Robot) -> None:
         arm.with_(stiffness={"shoulder": -1.0})
     with pytest.raises(gyroflex.Error, match="shoulder"):
         arm.with_(stiffness={"shoulde": 1.0})
+
+
+def test_what_a_frame_feels_is_a_batch_of_what_it_feels(arm: gyroflex.Robot) -> None:
+    batch = {n: batch_of(arm, 20)[n] for n in ("q", "qd", "thetad")}
+    many = arm.operational_space("tool", **batch, directions=["x", "y"])
+    for k in range(20):
+        one = arm.operational_space("tool", **{n: a[k] for n, a in batch.items()}, directions=["x", "y"])
+        assert isinstance(one["smallest"], float)
+        for name, value in one.items():
+            np.testing.assert_array_equal(many[name][k], value, err_msg=name)
+
+
+def test_a_motion_over_time_is_inverted_moment_by_moment(arm: gyroflex.Robot) -> None:
+    robot = arm.with_(model="complete")
+    order, step = max(robot.smoothness().values()), 1e-3
+    t = step * np.arange(200)[:, None]
+    speeds = np.array([1.0, 2.0, 3.0])
+    q = np.sin(t * speeds)
+    derivatives = np.stack([speeds**k * np.sin(t * speeds + k * np.pi / 2) for k in range(1, order + 1)], axis=1)
+    many = robot.elastic_inverse(q, derivatives, step=step, torque_derivatives=0)
+    deflection = None
+    for k in range(len(t)):
+        one = robot.elastic_inverse(q[k], derivatives[k], deflection=deflection, step=step)
+        deflection = one.deflection
+        for name in ("theta", "thetad", "thetadd", "tau_j", "tau", "deflection", "deflection_rate"):
+            np.testing.assert_array_equal(getattr(many, name)[k], getattr(one, name), err_msg=name)
+    with pytest.raises(gyroflex.ShapeError, match="200 times"):
+        robot.elastic_inverse(q, derivatives[:-1], step=step)
+    with pytest.raises(gyroflex.ShapeError, match="shape"):
+        robot.elastic_inverse(q, derivatives[0], step=step)

@@ -24,6 +24,7 @@ from ._gyroflex import (
     Robot,
     __version__,
 )
+from .builder import RobotBuilder
 from .errors import (
     ArgumentError,
     DivergedError,
@@ -62,6 +63,7 @@ __all__ = [
     "ModelError",
     "NotFiniteError",
     "Robot",
+    "RobotBuilder",
     "RobotWarning",
     "ScenarioError",
     "ShapeError",

@@ -9,6 +9,7 @@ from typing import Any, Literal, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .builder import RobotBuilder
 from .errors import DivergedError
 
 __all__ = [
@@ -199,43 +200,43 @@ class GeneratedCode:
 
 @final
 class ElasticInverse:
-    """What the motors must do for a motion of the links."""
+    """What the motors must do for a motion of the links, at one moment or over time."""
 
     @property
     def theta(self) -> _Vector:
-        """Motor positions seen from the link side, shape `(nv,)`."""
+        """Motor positions seen from the link side, shape `(nv,)` or `(times, nv)`."""
 
     @property
     def thetad(self) -> _Vector:
-        """Motor velocities seen from the link side, shape `(nv,)`."""
+        """Motor velocities seen from the link side, shape `(nv,)` or `(times, nv)`."""
 
     @property
     def thetadd(self) -> _Vector:
-        """Motor accelerations seen from the link side, shape `(nv,)`."""
+        """Motor accelerations seen from the link side, shape `(nv,)` or `(times, nv)`."""
 
     @property
     def tau_j(self) -> _Vector:
-        """Torques that the transmissions exert on the joints, shape `(nv,)` [N m or N]."""
+        """Torques that the transmissions exert on the joints, shape `(nv,)` or `(times, nv)` [N m or N]."""
 
     @property
     def tau(self) -> _Vector:
-        """Motor torques seen from the link side, shape `(nv,)` [N m or N]."""
+        """Motor torques seen from the link side, shape `(nv,)` or `(times, nv)` [N m or N]."""
 
     @property
     def tau_j_derivatives(self) -> _Matrix:
-        """Time derivatives of `tau_j` from the first on, shape `(torque_derivatives, nv)`."""
+        """Time derivatives of `tau_j` from the first on, shape `(torque_derivatives, nv)`, over time with the times first."""
 
     @property
     def tau_derivatives(self) -> _Matrix:
-        """Time derivatives of `tau` from the first on, shape `(torque_derivatives, nv)`."""
+        """Time derivatives of `tau` from the first on, shape `(torque_derivatives, nv)`, over time with the times first."""
 
     @property
     def deflection(self) -> _Vector:
-        """Deflections of the transmissions after the step, shape `(nv,)`: the `deflection` of the next call."""
+        """Deflections of the transmissions after the step, shape `(nv,)` or `(times, nv)`: the `deflection` of the next call."""
 
     @property
     def deflection_rate(self) -> _Vector:
-        """Their rates before the step, shape `(nv,)`."""
+        """Their rates before the step, shape `(nv,)` or `(times, nv)`."""
 
 @final
 class Constraint:
@@ -549,14 +550,24 @@ class Robot:
 
     @staticmethod
     def from_urdf(
-        text: str,
-        drives: str | None = None,
+        urdf: str | os.PathLike[str],
+        drives: str | Mapping[str, Any] | None = None,
         *,
         floating: bool = False,
         model: _Model | None = None,
         set: Mapping[str, Any] | None = None,
     ) -> Robot:
-        """Makes a robot from the text of a URDF and the text of a robot YAML with its drives."""
+        """Makes a robot from a URDF, its text or its path, and its drives by joint or as the text of a robot YAML."""
+
+    @staticmethod
+    def from_builder(
+        builder: RobotBuilder,
+        *,
+        floating: bool = False,
+        model: _Model | None = None,
+        set: Mapping[str, Any] | None = None,
+    ) -> Robot:
+        """Makes a robot from links, joints and drives given one by one."""
 
     def with_(
         self,
@@ -618,8 +629,9 @@ class Robot:
         *,
         model: _Model | None = None,
         tau_ext: ArrayLike | None = None,
+        out: tuple[_Blocks, _Blocks] | None = None,
     ) -> tuple[_Blocks, _Blocks]:
-        """Derivatives of `qdd` and `thetadd` by `q, qd, theta, thetad, tau`, shape `(5, nv, nv)` each."""
+        """Derivatives of `qdd` and `thetadd` by `q, qd, theta, thetad, tau`, shape `(5, nv, nv)` or `(batch, 5, nv, nv)` each."""
 
     def inverse_derivatives(
         self,
@@ -632,8 +644,9 @@ class Robot:
         *,
         model: _Model | None = None,
         tau_ext: ArrayLike | None = None,
+        out: tuple[_Blocks, _Blocks] | None = None,
     ) -> tuple[_Blocks, _Blocks]:
-        """Derivatives of `tau_j` and `tau` by `q, qd, qdd, theta, thetad, thetadd`, shape `(6, nv, nv)` each."""
+        """Derivatives of `tau_j` and `tau` by `q, qd, qdd, theta, thetad, thetadd`, shape `(6, nv, nv)` or `(batch, 6, nv, nv)` each."""
 
     def regressor(
         self,
@@ -645,8 +658,9 @@ class Robot:
         thetadd: ArrayLike | None = None,
         *,
         model: _Model | None = None,
+        out: tuple[_Matrix, _Matrix, _Matrix] | None = None,
     ) -> tuple[_Matrix, _Matrix, _Matrix]:
-        """Matrices of links, transmissions and motors that `parameters` enter linearly, shape `(nv, 20 bodies)` each."""
+        """Matrices of links, transmissions and motors that `parameters` enter linearly, shape `(nv, 20 bodies)` each; or batches."""
 
     def parameters(self, *, model: _Model | None = None) -> _Vector:
         """The parameters that `regressor` belongs to, twenty for each body."""

@@ -81,8 +81,8 @@ impl PyRobot {
             let Some(tau) = tau else {
                 return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
             };
-            self.layout.forces("tau", tau, &mut w.first)?;
-            let Workspace { dynamics, q, qd, theta, thetad, first: tau, tau_ext: room, .. } = w;
+            self.layout.forces("tau", tau, &mut w.tau)?;
+            let Workspace { dynamics, q, qd, theta, thetad, tau, tau_ext: room, .. } = w;
             let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
             let (mut out, mut multipliers, mut wrenches) = self.room(&held);
             let [qdd, thetadd, tau_j] = &mut out;
@@ -159,9 +159,9 @@ impl PyRobot {
         let sharing = Distribution::read(self, &held, passive, torque_weights, multiplier_weights, wanted)?;
         self.with(model, |w| {
             self.layout.state(w, q, qd, theta, thetad)?;
-            self.layout.velocities("qdd", qdd, &mut w.first)?;
-            self.layout.motors("thetadd", thetadd, w.elastic, &mut w.second)?;
-            let Workspace { dynamics, q, qd, theta, thetad, first: qdd, second: thetadd, tau_ext: room, .. } = w;
+            self.layout.velocities("qdd", qdd, &mut w.qdd)?;
+            self.layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)?;
+            let Workspace { dynamics, q, qd, theta, thetad, qdd, thetadd, tau_ext: room, .. } = w;
             let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
             let ([mut tau_j, mut tau, _], mut multipliers, mut wrenches) = self.room(&held);
             let solved = dynamics.constrained_inverse(

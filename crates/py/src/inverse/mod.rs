@@ -6,12 +6,14 @@ mod result;
 pub(crate) use kept::Inverses;
 pub(crate) use result::PyElasticInverse;
 
-use crate::arrays::read_rows;
+use crate::arguments::Layout;
+use crate::arrays::{numbers, read_rows, text_of};
 use crate::robot::PyRobot;
 use crate::{arguments, errors};
 use gyroflex::dynamics::{External, JointOrders};
 use gyroflex_sim::inverse::{joint_orders, with_least_damping};
 use kept::Wanted;
+use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -52,18 +54,22 @@ impl PyRobot {
 
     /// Motions and torques of the motors that make the links move as asked, elastic transmissions included.
     ///
+    /// Of one moment, or of a motion over time, whose arrays have the times as their first axis: a damped transmission deflects from
+    /// each to the next.
+    ///
     /// Parameters
     /// ----------
     /// q
-    ///     Joint positions, shape `(nq,)` [rad or m].
+    ///     Joint positions, shape `(nq,)` or `(times, nq)` [rad or m].
     /// derivatives
-    ///     Their time derivatives from the velocities on, shape `(order, nv)` [rad or m, per s, per s², …]; `smoothness` says how many
+    ///     Their time derivatives from the velocities on, shape `(order, nv)` or `(times, order, nv)` [rad or m, per s, per s², …];
+    ///     `smoothness` says how many
     ///     are needed. Of a floating root the twist in its own frame, and the derivatives of those six numbers.
     /// deflection
     ///     Present deflections of damped transmissions, which are a state of the inverse, shape `(nv,)` [rad or m]; at first those of
     ///     rest at `q`, which is what is taken if it is left out; later the `deflection` of the call before.
     /// step
-    ///     Time to the next call [s], after which the `deflection` of the result is.
+    ///     Time to the next call [s], after which the `deflection` of the result is; of a motion, from each time to the next.
     /// model
     ///     Which physics of the motors.
     /// tau_ext
@@ -83,6 +89,7 @@ impl PyRobot {
     #[expect(clippy::too_many_arguments, reason = "most of them may be left out")]
     fn elastic_inverse<'py>(
         &self,
+        py: Python<'py>,
         q: &Bound<'py, PyAny>,
         derivatives: &Bound<'py, PyAny>,
         deflection: Option<&Bound<'py, PyAny>>,
@@ -94,10 +101,7 @@ impl PyRobot {
     ) -> PyResult<PyElasticInverse> {
         let wanted = self.wanted(model, torque_derivatives, damping)?;
         at_least_zero("step", step)?;
-        let nv = self.layout.nv;
-        let mut positions = vec![0.0; self.layout.nq];
-        self.layout.positions(q, &mut positions)?;
-        let derivatives = read_rows("derivatives", derivatives, nv, DERIVATIVES)?;
+        let (nv, motion) = (self.layout.nv, self.motion_over_time(q, derivatives)?);
         let loads = self.loads(tau_ext)?;
         let ext = External { tau: &loads, wrenches: &[] };
         let mut now = vec![0.0; nv];
@@ -105,15 +109,24 @@ impl PyRobot {
             self.layout.forces("deflection", deflection, &mut now)?;
         }
         self.inverses.with(&self.robot, wanted, |inverse| {
-            self.check(inverse.smoothness().joints, derivatives.len() / nv.max(1))?;
+            self.check(inverse.smoothness().joints, motion.order)?;
             inverse.set_deflection(&now);
             if deflection.is_none() && inverse.smoothness().joints.iter().any(|j| j.damped) {
                 let at_rest = External { tau: loads.get(..nv).unwrap_or(&[]), wrenches: &[] };
-                inverse.rest(&positions, at_rest).map_err(errors::raise)?;
+                inverse.rest(motion.positions(0), at_rest).map_err(errors::raise)?;
             }
-            inverse.at(&positions, &derivatives, ext, step).map_err(errors::raise)?;
-            inverse.advance();
-            Ok(PyElasticInverse::of(inverse, torque_derivatives))
+            let mut found = PyElasticInverse::new(nv, motion.times, torque_derivatives);
+            let mut run = || {
+                for k in 0..motion.times.unwrap_or(1) {
+                    inverse.at(motion.positions(k), motion.derivatives(k), ext, step)?;
+                    inverse.advance();
+                    found.push(inverse);
+                }
+                Ok::<(), gyroflex_sim::Error>(())
+            };
+            // Of one moment, letting others run takes longer than running.
+            if motion.times.is_some() { py.detach(run) } else { run() }.map_err(errors::raise)?;
+            Ok(found)
         })
     }
 }
@@ -121,7 +134,58 @@ impl PyRobot {
 const DERIVATIVES: &str = "give a row for each derivative, the velocities first, with one entry per velocity coordinate in the order of \
                            `joint_names`; a floating root leads with six";
 
+/// A motion of the links, of one moment or over time.
+struct Motion {
+    times: Option<usize>,
+    order: usize,
+    nq: usize,
+    nv: usize,
+    positions: Vec<f64>,
+    derivatives: Vec<f64>,
+}
+
+impl Motion {
+    fn positions(&self, k: usize) -> &[f64] {
+        &self.positions[k * self.nq..][..self.nq]
+    }
+
+    fn derivatives(&self, k: usize) -> &[f64] {
+        let width = self.order * self.nv;
+        &self.derivatives[k * width..][..width]
+    }
+}
+
 impl PyRobot {
+    /// Reads a motion, and asks for as many times everywhere.
+    fn motion_over_time(&self, q: &Bound<'_, PyAny>, derivatives: &Bound<'_, PyAny>) -> PyResult<Motion> {
+        let Layout { nq, nv, .. } = self.layout;
+        let (q_array, d_array) = (numbers("q", q)?, numbers("derivatives", derivatives)?);
+        if q_array.ndim() != 2 && d_array.ndim() != 3 {
+            let mut positions = vec![0.0; nq];
+            self.layout.positions(q, &mut positions)?;
+            let derivatives = read_rows("derivatives", derivatives, nv, DERIVATIVES)?;
+            return Ok(Motion { times: None, order: derivatives.len() / nv.max(1), nq, nv, positions, derivatives });
+        }
+        let (q_shape, d_shape) = (q_array.shape(), d_array.shape());
+        let (&[times, _], &[d_times, order, _]) = (q_shape, d_shape) else {
+            let problem = format!("`q` has shape {}, `derivatives` {}", text_of(q_shape), text_of(d_shape));
+            return Err(errors::shape("derivatives", problem, format!("give (times, {nq}) and (times, order, {nv})")));
+        };
+        if times != d_times || times == 0 {
+            let problem = format!("`q` has {times} times, `derivatives` {d_times}");
+            return Err(errors::shape("derivatives", problem, "give one row of each for every time"));
+        }
+        let mut positions = vec![0.0; times * nq];
+        for (row, to) in q.try_iter()?.zip(positions.chunks_mut(nq.max(1))) {
+            self.layout.positions(&row?, to)?;
+        }
+        let mut all = Vec::new();
+        for row in derivatives.try_iter()? {
+            all.extend(read_rows("derivatives", &row?, nv, DERIVATIVES)?);
+        }
+        Ok(Motion { times: Some(times), order, nq, nv, positions, derivatives: all })
+    }
+
     fn wanted(&self, model: Option<&str>, torque_derivatives: usize, damping: Option<f64>) -> PyResult<Wanted> {
         let fidelity = model.map_or(Ok(self.robot.fidelity), arguments::fidelity)?;
         let damping = damping.unwrap_or(0.0);
