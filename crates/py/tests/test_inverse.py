@@ -175,7 +175,7 @@ def test_too_few_derivatives_are_listed_joint_by_joint(undamped: gyroflex.Robot)
 
 
 @pytest.mark.parametrize(
-    ("value", "given"), [(np.zeros(9), "(9,)"), (np.zeros((8, 2)), "(8, 2)"), (np.zeros((2, 2, 3)), "(2, 2, 3)")]
+    ("value", "given"), [(np.zeros(9), "(9,)"), (np.zeros((8, 2)), "(8, 2)"), (np.zeros((2, 2, 2, 3)), "(2, 2, 2, 3)")]
 )
 def test_derivatives_of_the_wrong_shape_are_named(arm: gyroflex.Robot, value: np.ndarray, given: str) -> None:
     with pytest.raises(gyroflex.ShapeError) as caught:
