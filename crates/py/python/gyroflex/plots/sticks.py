@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 FLAT = 1e-6
 """Depth of what lies in a plane [m]."""
+FAR = 2.5
+"""A way that is so many times as long as the robot is large is not shown as a whole."""
 
 
 def animate(
@@ -36,7 +38,8 @@ def animate(
     """Animates a run as a stick figure.
 
     Sticks go from the origin of every link to those of its children; a link without any, or with all of them close to its origin, is
-    drawn twice as far as its centre of mass. Links without mass between the world and the first one with mass are left out.
+    drawn twice as far as its centre of mass. Links without mass between the world and the first one with mass are left out. A robot that
+    goes far is followed.
 
     Parameters
     ----------
@@ -80,18 +83,29 @@ def animate(
 
     plt = pyplot()
     figure = plt.figure(figsize=(5.6, 5.6), layout="constrained")
-    ax = figure.add_subplot(projection="3d")
-    low, high = sticks.min(axis=(0, 1, 2)), sticks.max(axis=(0, 1, 2))
+    ax = figure.add_subplot(projection="3d", proj_type="ortho")
+    low, high = sticks.min(axis=(1, 2)), sticks.max(axis=(1, 2))
+    size, middles = (high - low).max(), (low + high) / 2
+    low, high = low.min(axis=0), high.max(axis=0)
+    # What goes far is followed.
+    far = high - low > FAR * size
+    middles = np.where(far, middles, (low + high) / 2)
     # One metre is as long in every direction; what lies in a plane gets a little depth.
-    sides = np.maximum(high - low, 0.25 * (high - low).max() or 1.0)
-    middle = (low + high) / 2
-    for axis, half, center in zip("xyz", sides / 2, middle, strict=True):
-        ax.set(**{f"{axis}lim": (center - half, center + half), f"{axis}label": f"{axis} [m]"})
+    sides = np.where(far, FAR * size, high - low)
+    sides = np.maximum(sides, 0.25 * sides.max() or 1.0)
+
+    def look_at(middle: NDArray[np.float64]) -> None:
+        for axis, half, center in zip("xyz", sides / 2, middle, strict=True):
+            ax.set(**{f"{axis}lim": (center - half, center + half)})
+
+    look_at(middles[0])
+    ax.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
     elevation, azimuth = np.deg2rad(view)
     towards = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
     for axis in np.array(list("xyz"))[(high - low < FLAT) | (np.abs(towards) > 0.999)]:
         ax.set(**{f"{axis}ticks": [], f"{axis}label": ""})
-    ax.set_box_aspect(sides)
+    # A tuple: an array would be scaled in place.
+    ax.set_box_aspect(tuple(sides))
     ax.view_init(*view)
     lines = [ax.plot(*stick.T, color=COLOURS[0], linewidth=3, marker="o", markersize=4, markerfacecolor="white")[0] for stick in sticks[0]]
     title = ax.set_title("")
@@ -99,6 +113,7 @@ def animate(
     def draw(frame: int) -> Sequence[object]:
         for line, stick in zip(lines, sticks[frame], strict=True):
             line.set_data_3d(*stick.T)
+        look_at(middles[frame])
         title.set_text(f"{robot.name}, {result.t[samples[frame]]:.2f} s")
         return [*lines, title]
 
