@@ -335,7 +335,11 @@ pub(crate) fn write<F: Float>(
     arrays: &[Bound<'_, PyArrayDyn<F>>],
     call: impl FnOnce(&mut [&mut [F]]) -> PyResult<()>,
 ) -> PyResult<()> {
-    let refuse = |problem: String| errors::argument("out", problem, "give writable, contiguous arrays of their own");
+    let refuse =
+        |problem: String| errors::argument("out", problem, "give writable arrays in C order that do not overlap");
+    if arrays.iter().any(|array| !array.is_c_contiguous()) {
+        return Err(refuse("an array is not in C order, one row after the other".to_owned()));
+    }
     let mut lent =
         arrays.iter().map(|a| a.try_readwrite().map_err(|e| refuse(e.to_string()))).collect::<PyResult<Vec<_>>>()?;
     let mut slices =
@@ -350,7 +354,11 @@ pub(crate) fn results<'py, F: Float>(
     out: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Vec<Bound<'py, PyArrayDyn<F>>>> {
     let Some(out) = out else {
-        return Ok(shapes.iter().map(|(_, shape)| PyArrayDyn::zeros(py, &shape[..], false)).collect());
+        // NumPy's own way to make arrays says so where there is no memory.
+        let zeros = py.import("numpy")?.getattr("zeros")?;
+        let made =
+            |shape: &Shape| Ok(zeros.call1((PyTuple::new(py, &shape.1)?, numpy::dtype::<F>(py)))?.cast_into()?);
+        return shapes.iter().map(made).collect();
     };
     let outs = items(out, shapes.len())?;
     shapes.iter().zip(outs).map(|((name, shape), out)| checked::<F>(name, shape, &out)).collect()
@@ -387,6 +395,14 @@ fn checked<'py, F: Float>(name: &str, shape: &[usize], out: &Bound<'py, PyAny>) 
 /// Copies the results of one state into the caller's arrays.
 fn fill<'py>(shapes: &[Shape], result: &Bound<'py, PyAny>, out: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let (outs, results) = (items(out, shapes.len())?, items(result, shapes.len())?);
+    let shared = out.py().import("numpy")?.getattr("shares_memory")?;
+    for (i, one) in outs.iter().enumerate() {
+        for other in &outs[..i] {
+            if shared.call1((one, other))?.extract::<bool>()? {
+                return Err(errors::argument("out", "its arrays overlap", "give an array of its own for each result"));
+            }
+        }
+    }
     for ((name, shape), out) in shapes.iter().zip(&outs) {
         if !checked::<f64>(name, shape, out)?.getattr("flags")?.getattr("writeable")?.extract::<bool>()? {
             return Err(errors::argument(

@@ -8,7 +8,6 @@ use gyroflex_sim::codegen::{Generated, Language, Precision, Request, Simplify, S
 use gyroflex_sim::load::Disk;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::ffi::CString;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -48,10 +47,12 @@ impl PyGeneratedCode {
             let remedy = "generate it with lang=\"python\"";
             return Err(errors::argument("lang", format!("code in {} is no module", self.language), remedy));
         };
+        // Not by importing: modules of the same name would be one.
         let name = file.name.trim_end_matches(".py");
-        let [text, file, name] =
-            [file.text.as_str(), &file.name, name].map(|text| CString::new(text).unwrap_or_default());
-        PyModule::from_code(py, &text, &file, &name)
+        let (module, builtins) = (PyModule::new(py, name)?, py.import("builtins")?);
+        let code = builtins.call_method1("compile", (&file.text, format!("<gyroflex codegen {name}>"), "exec"))?;
+        builtins.call_method1("exec", (code, module.dict()))?;
+        Ok(module)
     }
 
     fn __str__(&self) -> String {
@@ -122,6 +123,14 @@ impl PyRobot {
         if along.is_some() && simplify_to.is_none() {
             return Err(errors::argument("along", "no terms are dropped", "give simplify_to, too, such as 1e-3"));
         }
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        if let Some(name) = name.as_ref().filter(|name| name.is_empty() || !name.chars().all(plain)) {
+            let remedy = "give letters, digits and underscores";
+            return Err(errors::argument("name", format!("`{name}` is no name of a file and of functions"), remedy));
+        }
+        if what.as_ref().is_some_and(Names::is_empty) {
+            return Err(errors::argument("what", "nothing is asked for", "name a quantity, or `all`"));
+        }
         let request = Request {
             what: what.map_or_else(|| vec!["forward".to_owned(), "inverse".to_owned()], Names::all),
             target,
@@ -160,6 +169,10 @@ enum Names {
 }
 
 impl Names {
+    fn is_empty(&self) -> bool {
+        matches!(self, Self::Many(names) if names.is_empty())
+    }
+
     fn all(self) -> Vec<String> {
         match self {
             Self::One(name) => vec![name],

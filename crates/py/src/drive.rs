@@ -208,7 +208,16 @@ impl PyRobot {
         payload: Option<&Bound<'py, PyMapping>>,
         set: Option<&Bound<'py, PyMapping>>,
     ) -> PyResult<Self> {
+        let mut options = self.options.clone();
         let all = PyDict::new(py);
+        // What was given beside the file becomes a key of it, so that the last word counts.
+        let model = model.map(arguments::fidelity).transpose()?;
+        if let Some(model) = model.or(options.model.take()) {
+            all.set_item("model", model.name())?;
+        }
+        if let Some(gravity) = gravity.or(options.gravity.take()) {
+            all.set_item("gravity", gravity)?;
+        }
         let by_joint = [
             ("transmission.stiffness", stiffness),
             ("transmission.damping", damping),
@@ -228,10 +237,7 @@ impl PyRobot {
         if let Some(set) = set {
             all.update(set)?;
         }
-        let mut options = self.options.clone();
         options.overrides.extend(&overrides(Some(all.as_any().cast::<PyMapping>()?))?);
-        options.model = model.map(arguments::fidelity).transpose()?.or(options.model);
-        options.gravity = gravity.or(options.gravity);
         self.origin.clone().read(py, options)
     }
 }

@@ -37,7 +37,8 @@ use std::path::PathBuf;
 /// Where a method takes `out`, its arrays may also be of shape `(batch, n)`, any of them, and the results lead with that axis: the states
 /// are computed side by side in lanes and on all cores (`RAYON_NUM_THREADS` limits them), with the interpreter released, and agree with
 /// single calls to rounding. If all arrays are float32, so are the computation and the results; otherwise float64. `out` is an array, or a
-/// tuple of them, that takes the results.
+/// tuple of them in C order, that takes the results. Derivatives and the regressor are computed row by row, in float64. Robots with
+/// links that bend take one state a call, in float64.
 ///
 /// `model` is one of `complete`, `reduced`, `rigid`, `rigid_reflected`; the default is the one of the robot's file.
 #[pyclass(name = "Robot", module = "gyroflex", frozen)]

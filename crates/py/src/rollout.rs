@@ -85,6 +85,13 @@ impl PyRobot {
                 return Err(errors::shape("tau", problem, "leave `steps` out, or give torques of as many steps"));
             }
         };
+        if steps > isize::MAX as usize / 1024 {
+            return Err(errors::argument(
+                "steps",
+                format!("{steps} states are more than fit"),
+                "give a smaller number",
+            ));
+        }
         let start = [
             ("q0", Some(q0), Need::Always),
             ("qd0", Some(qd0), Need::Always),

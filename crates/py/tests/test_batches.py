@@ -292,3 +292,55 @@ def test_a_motion_over_time_is_inverted_moment_by_moment(arm: gyroflex.Robot) ->
         robot.elastic_inverse(q, derivatives[:-1], step=step)
     with pytest.raises(gyroflex.ShapeError, match="shape"):
         robot.elastic_inverse(q, derivatives[0], step=step)
+
+
+@pytest.mark.parametrize("name", ["forward_dynamics", "mass_matrix", "forward_derivatives"])
+def test_out_in_another_order_is_refused(arm: gyroflex.Robot, name: str) -> None:
+    call, names = CALLS[name]
+    batch = {n: a for n, a in batch_of(arm, 20).items() if n in names}
+    room = tuple(np.empty(a.shape, order="F") for a in results(call(arm, **batch)))
+    with pytest.raises(gyroflex.ArgumentError, match="C order"):
+        call(arm, **batch, out=room if len(room) > 1 else room[0])
+
+
+def test_out_of_one_state_does_not_overlap(arm: gyroflex.Robot) -> None:
+    one = {n: a[0] for n, a in batch_of(arm, 1).items() if n in CALLS["forward_dynamics"][1]}
+    room = np.empty(arm.nv)
+    with pytest.raises(gyroflex.ArgumentError, match="overlap"):
+        arm.forward_dynamics(**one, out=(room, room))
+
+
+def test_more_than_fits_is_an_error_of_python(arm: gyroflex.Robot) -> None:
+    zeros = np.zeros(3)
+    start = {"q0": zeros, "qd0": zeros, "theta0": zeros, "thetad0": zeros, "tau": zeros, "dt": 1e-3}
+    with pytest.raises((MemoryError, gyroflex.ArgumentError)):
+        arm.rollout(**start, steps=10**12)
+    with pytest.raises(gyroflex.ArgumentError, match="steps"):
+        arm.rollout(**start, steps=2**63 - 1)
+
+
+def test_the_last_word_on_gravity_and_model_counts(arm: gyroflex.Robot, arm_file: Path) -> None:
+    changed = arm.with_(gravity=(0.0, 0.0, -1.0), model="rigid").with_(set={"gravity": [0, 0, -5], "model": "reduced"})
+    assert changed.gravity.tolist() == [0, 0, -5] and changed.model == "reduced"
+    loaded = gyroflex.Robot.load(arm_file, model="rigid").with_(stiffness={"shoulder": 1e4})
+    assert loaded.model == "rigid"
+    again = loaded.with_(model="complete").with_(gravity=(0.0, 0.0, 1.0))
+    assert again.gravity.tolist() == [0, 0, 1] and again.model == "complete"
+
+
+def test_loads_over_time_are_those_of_each_time(arm: gyroflex.Robot) -> None:
+    order = max(arm.smoothness().values())
+    q, derivatives = np.full((5, 3), 0.2), np.zeros((5, order, 3))
+    loads = np.arange(15.0).reshape(5, 3)
+    many = arm.elastic_inverse(q, derivatives, tau_ext=loads, step=1e-3)
+    rows = arm.elastic_inverse(q, derivatives, tau_ext=loads[:, None], step=1e-3)
+    deflection = None
+    for k in range(5):
+        one = arm.elastic_inverse(q[k], derivatives[k], tau_ext=loads[k], deflection=deflection, step=1e-3)
+        deflection = one.deflection
+        np.testing.assert_array_equal(many.tau[k], one.tau)
+        np.testing.assert_array_equal(rows.tau[k], one.tau)
+    with pytest.raises(gyroflex.ShapeError, match="5 times"):
+        arm.elastic_inverse(q, derivatives, tau_ext=loads[:2], step=1e-3)
+    with pytest.raises(gyroflex.ArgumentError, match="`step`.*from each time to the next"):
+        arm.elastic_inverse(q, derivatives)

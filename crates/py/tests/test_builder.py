@@ -71,3 +71,16 @@ def test_what_is_built_wrong_is_refused() -> None:
         gyroflex.Robot.from_builder(gyroflex.RobotBuilder("arm").link("base").joint("joint", "base", "nobody"))
     with pytest.raises(gyroflex.Error, match="nobody"):
         gyroflex.Robot.from_builder(builder().drive("nobody", ratio=1, rotor={"inertia": 1e-4}))
+
+
+def test_drives_built_wrong_are_refused() -> None:
+    with pytest.raises(gyroflex.ArgumentError, match="has a drive already"):
+        builder().drive("shoulder", ratio=1, rotor={"inertia": 1e-4})
+    with pytest.raises(gyroflex.NotFiniteError, match="`ratio`"):
+        builder().drive("extend", ratio=float("nan"), rotor={"inertia": 1e-4})
+    with pytest.raises(gyroflex.ArgumentError, match="`rotor`"):
+        builder().drive("extend", ratio=1, rotor=1e-4)  # type: ignore[arg-type]
+    with pytest.raises(gyroflex.ShapeError, match="`inertia`"):
+        gyroflex.RobotBuilder("arm").link("base", mass=1, inertia=np.eye(3))  # type: ignore[arg-type]
+    rigid = builder().drive("extend", ratio=20, rotor={"inertia": 1e-4}, transmission="rigid", max_torque=5.0)
+    assert gyroflex.Robot.from_builder(rigid).drives["extend"].stiffness is None

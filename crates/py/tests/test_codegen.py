@@ -88,3 +88,22 @@ def test_what_cannot_be_generated_is_refused(puma: gyroflex.Robot, arguments: di
 def test_only_python_is_a_module(puma: gyroflex.Robot) -> None:
     with pytest.raises(gyroflex.ArgumentError, match="code in rust is no module"):
         puma.codegen(lang="rust").module()
+
+
+def test_modules_of_one_robot_are_independent(puma: gyroflex.Robot) -> None:
+    complete = puma.codegen("forward", model="complete").module()
+    reduced = puma.codegen("forward", model="reduced", name="json").module()
+    rows = states(puma, 1)
+    assert complete is not reduced
+    assert np.abs(complete.forward_dynamics(*rows)[0] - reduced.forward_dynamics(*rows)[0]).max() > 0
+    import json
+
+    assert not hasattr(json, "forward_dynamics")
+
+
+@pytest.mark.parametrize("name", ["../evil", "", "a b", "a\0b"])
+def test_names_are_names_of_files_and_functions(puma: gyroflex.Robot, name: str) -> None:
+    with pytest.raises(gyroflex.ArgumentError, match="letters, digits"):
+        puma.codegen(name=name)
+    with pytest.raises(gyroflex.ArgumentError, match="nothing is asked for"):
+        puma.codegen([])

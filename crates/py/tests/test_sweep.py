@@ -217,3 +217,34 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_file(path: Path, tmp_path:
         sweep(path, values, measure=slow, output=tmp_path / "cluster.parquet", client=client)
         assert victim not in {worker.pid for worker in cluster.workers.values()}
     assert (tmp_path / "cluster.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({STIFFNESS: 3e3}, "no list of values"),
+        ({"robot.model": "rigid"}, "no list of values"),
+        ([1, 2], "not every run is a mapping"),
+        ({}, "nothing to run"),
+        ([{STIFFNESS: 1e3}, {"controller.kd": 3.0}], "same keys"),
+    ],
+)
+def test_values_that_are_none_are_refused(path: Path, values: Any, words: str) -> None:
+    with pytest.raises(gyroflex.ArgumentError, match=words):
+        sweep(path, values)
+
+
+def test_a_measure_has_names_of_its_own(path: Path) -> None:
+    with pytest.raises(gyroflex.ArgumentError, match="it measures"):
+        sweep(path, {STIFFNESS: [3e3]}, measure=lambda _: {STIFFNESS: 1})
+    with pytest.raises(gyroflex.ArgumentError, match="not a mapping"):
+        sweep(path, {STIFFNESS: [3e3]}, measure=lambda _: None)
+
+
+def test_a_call_that_ran_nothing_leaves_nothing_in_the_way(path: Path, tmp_path: Path) -> None:
+    output = tmp_path / "runs.csv"
+    with pytest.raises(gyroflex.Error):
+        sweep(path, {"drives.shoulder.transmission.stifness": [3e3]}, output=output)
+    assert sweep(path, {STIFFNESS: [3e3]}, output=output)["error"].tolist() == [""]
+    with pytest.raises(gyroflex.FileError, match="folder"):
+        sweep(path, output=tmp_path / "nowhere" / "runs.csv")

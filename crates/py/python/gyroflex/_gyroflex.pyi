@@ -232,7 +232,7 @@ class ElasticInverse:
 
     @property
     def deflection(self) -> _Vector:
-        """Deflections of the transmissions after the step, shape `(nv,)` or `(times, nv)`: the `deflection` of the next call."""
+        """Deflections of the transmissions after the step, shape `(nv,)` or `(times, nv)`: the last is the `deflection` of the next call."""
 
     @property
     def deflection_rate(self) -> _Vector:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 from xml.etree import ElementTree
 
-from .errors import NotFiniteError, ShapeError
+from .errors import ArgumentError, NotFiniteError, ShapeError
 
 __all__ = ["RobotBuilder"]
 
@@ -59,8 +59,8 @@ class RobotBuilder:
             inertial = ElementTree.SubElement(link, "inertial")
             ElementTree.SubElement(inertial, "origin", xyz=_words(com, 3, "com"), rpy=_words(rpy, 3, "rpy"))
             ElementTree.SubElement(inertial, "mass", value=_words([mass], 1, "mass"))
-            if len(inertia) not in (3, 6):
-                problem = f"{len(inertia)} numbers are given"
+            if len(inertia) not in (3, 6) or any(isinstance(x, Sequence) or getattr(x, "ndim", 0) for x in inertia):
+                problem = f"{len(inertia)} entries are given"
                 raise ShapeError(problem, "argument `inertia`", "", "give xx, yy, zz, or these and xy, xz, yz")
             entries = [*inertia, 0, 0, 0][:6]
             names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
@@ -91,7 +91,7 @@ class RobotBuilder:
         name, parent, child
             Its name and those of the links.
         kind
-            ``continuous`` or ``prismatic``; ``revolute`` is a turning joint with limits; ``fixed``.
+            ``continuous``, ``revolute`` where the angle has limits, ``prismatic``, or ``fixed``.
         xyz, rpy
             Where the child's frame is in the parent's at zero [m, rad].
         axis
@@ -118,8 +118,9 @@ class RobotBuilder:
         *,
         ratio: float,
         rotor: Mapping[str, Any],
-        transmission: Mapping[str, Any] | None = None,
+        transmission: Mapping[str, Any] | Literal["rigid"] | None = None,
         friction: Mapping[str, Any] | None = None,
+        **more: Any,
     ) -> RobotBuilder:
         """Adds the drive of a joint, with the keys of a robot's YAML.
 
@@ -132,17 +133,28 @@ class RobotBuilder:
         rotor
             ``inertia`` about its spin axis, motor side [kg m²], and if known ``mass``, ``transverse_inertia``, ``mount``.
         transmission
-            ``stiffness``, ``damping``, …, link side; without one the gear is rigid.
+            ``stiffness``, ``damping``, …, link side; ``"rigid"``, or none, for a rigid gear.
         friction
             ``motor`` and ``link``, each with ``viscous``, ``coulomb``, ….
+        more
+            Further keys of a drive, such as ``max_torque``.
         """
-        keys: dict[str, Any] = {"rotor": dict(rotor), "gear_ratio": ratio}
+        if joint in self.drives:
+            raise ArgumentError(f"`{joint}` has a drive already", "argument `joint`", remedy="give each joint one drive")
+        _words([ratio], 1, "ratio")
+        keys: dict[str, Any] = {"rotor": rotor, "gear_ratio": ratio, **more}
         if transmission is not None:
-            keys["transmission"] = dict(transmission)
+            keys["transmission"] = transmission
         if friction is not None:
-            keys["friction"] = dict(friction)
+            keys["friction"] = friction
+        for key in ("rotor", "transmission", "friction"):
+            if not isinstance(keys.get(key, {}), Mapping) and keys[key] != "rigid":
+                raise ArgumentError(f"{keys[key]!r} has no keys", f"argument `{key}`", remedy="give a mapping, as in a robot's YAML")
         self.drives[joint] = keys
         return self
+
+    def __repr__(self) -> str:
+        return f"<RobotBuilder {self.name!r}: {len(self._links)} links, {len(self._joints)} joints, {len(self.drives)} drives>"
 
     def urdf(self) -> str:
         """The links and joints as a URDF."""

@@ -116,6 +116,8 @@ def sweep(
         What is wrong with a file or a key, which would meet every run. A run that diverges or is refused is a row with its ``error``.
     """
     runs, swept = _runs(values)
+    if n_jobs == 0 or n_jobs < -1:
+        raise ArgumentError(f"{n_jobs} is not a number of jobs", "argument `n_jobs`", remedy="give a number above zero, or -1 for all cores")
     target = None if output is None else Path(output)
     if target is not None:
         _check_output(target, overwrite)
@@ -156,9 +158,13 @@ class _Run:
                 if error is not None:
                     raise error
                 row = self.measure(result)
-                if "error" in row:
-                    remedy = "name it otherwise: that column says why a run failed"
-                    raise ArgumentError("it measures `error`", "argument `measure`", remedy=remedy)
+                if not isinstance(row, Mapping):
+                    problem = f"it returns {type(row).__name__}, not a mapping"
+                    raise ArgumentError(problem, "argument `measure`", remedy="return numbers or texts by name")
+                for taken in ("error", *values):
+                    if taken in row:
+                        remedy = "name it otherwise: there is a column of that name"
+                        raise ArgumentError(f"it measures `{taken}`", "argument `measure`", remedy=remedy)
         except (DivergedError, ModelError, ScenarioError) as error:
             return {"error": str(error).splitlines()[0]}
         return {str(name): _plain(value) for name, value in row.items()}
@@ -178,22 +184,27 @@ def _runs(values: Mapping[str, Iterable[object]] | Iterable[Values]) -> tuple[li
     """The values of every run, and the keys."""
     if isinstance(values, Mapping):
         swept = tuple(values)
+        for key, several_values in values.items():
+            if isinstance(several_values, str) or not isinstance(several_values, Iterable):
+                problem = f"`{key}`: {several_values!r} is no list of values"
+                raise ArgumentError(problem, "argument `values`", remedy="give a list, of one value if there is one")
         several = [[_plain(value) for value in values[key]] for key in swept]
         runs = [dict(zip(swept, combination, strict=True)) for combination in itertools.product(*several)]
     else:
-        runs = [{key: _plain(value) for key, value in run.items()} for run in values]
-        swept = tuple(runs[0]) if runs else ()
-        if any(tuple(run) != swept for run in runs):
-            raise ArgumentError("not all runs have the same keys", "argument `values`", remedy="give every run every key, in the same order")
-    if not runs:
+        given = list(values)
+        if not all(isinstance(run, Mapping) for run in given):
+            raise ArgumentError("not every run is a mapping", "argument `values`", remedy="give each run its keys and values")
+        swept = tuple(given[0]) if given else ()
+        if any(set(run) != set(swept) for run in given):
+            raise ArgumentError("not all runs have the same keys", "argument `values`", remedy="give every run every key")
+        runs = [{key: _plain(run[key]) for key in swept} for run in given]
+    if not runs or not swept:
         raise ArgumentError("there is nothing to run", "argument `values`", remedy="give each key at least one value")
     return runs, swept
 
 
 def _on_threads(run: _Run, todo: Mapping[int, Values], n_jobs: int) -> Ended:
     """Runs with their numbers as they end; the interpreter is released while they run."""
-    if n_jobs == 0 or n_jobs < -1:
-        raise ArgumentError(f"{n_jobs} is not a number of jobs", "argument `n_jobs`", remedy="give a number above zero, or -1 for all cores")
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     pool = ThreadPoolExecutor(cores if n_jobs == -1 else n_jobs)
     try:
@@ -238,10 +249,18 @@ class _Journal:
         text = self.path.read_text(encoding="utf-8") if self.path.exists() else ""
         # A line that was being written when the program or the machine stopped.
         kept = text[: text.rfind("\n") + 1]
+        lines = kept.splitlines()
+        # A head alone is of a call that failed before anything had run.
+        if len(lines) == 1:
+            kept = ""
         if kept and not kept.startswith(head):
             raise FileError("it is of a sweep over other values", "output", str(self.path), "name another output, or remove this file")
-        for line in kept.splitlines()[1:]:
-            i, row = json.loads(line)
+        for number, line in enumerate(lines[1:], start=2):
+            try:
+                i, row = json.loads(line)
+            except ValueError:
+                where = f"{self.path}:{number}"
+                raise FileError("the line is damaged", "output", where, "take it out, or name another output") from None
             self.rows[i] = row
         self._file = self.path.open("a", encoding="utf-8")
         self._file.truncate(len(kept.encode()))
@@ -268,6 +287,8 @@ class _Journal:
 def _check_output(target: Path, overwrite: bool) -> None:
     if target.suffix not in (".parquet", ".csv"):
         raise ArgumentError(f"`{target.name}` is no file for a table", "argument `output`", remedy="end it in .parquet or .csv")
+    if not target.absolute().parent.is_dir():
+        raise FileError("its folder does not exist", "output", str(target), "make the folder first")
     if target.exists() and not overwrite:
         raise FileError("it exists already", "output", str(target), "name another file, remove this one, or say `overwrite=True`")
     if target.suffix == ".parquet":

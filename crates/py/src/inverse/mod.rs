@@ -54,8 +54,8 @@ impl PyRobot {
 
     /// Motions and torques of the motors that make the links move as asked, elastic transmissions included.
     ///
-    /// Of one moment, or of a motion over time, whose arrays have the times as their first axis: a damped transmission deflects from
-    /// each to the next.
+    /// Of one moment, or of one motion over time, whose arrays have the times as their first axis: a damped transmission deflects from
+    /// each to the next. Moments that do not follow each other take a call each.
     ///
     /// Parameters
     /// ----------
@@ -74,7 +74,7 @@ impl PyRobot {
     ///     Which physics of the motors.
     /// tau_ext
     ///     Generalised forces on the link side of the joints that help, shape `(nv,)` [N m or N], held constant; or with their
-    ///     time derivatives, shape `(rows, nv)`.
+    ///     time derivatives, shape `(rows, nv)`. Of a motion over time `(nv,)`, `(times, nv)`, or `(times, rows, nv)`.
     /// torque_derivatives
     ///     How many time derivatives of the torques are asked for besides the torques.
     /// damping
@@ -102,8 +102,7 @@ impl PyRobot {
         let wanted = self.wanted(model, torque_derivatives, damping)?;
         at_least_zero("step", step)?;
         let (nv, motion) = (self.layout.nv, self.motion_over_time(q, derivatives)?);
-        let loads = self.loads(tau_ext)?;
-        let ext = External { tau: &loads, wrenches: &[] };
+        let loads = self.loads(tau_ext, motion.times)?;
         let mut now = vec![0.0; nv];
         if let Some(deflection) = deflection {
             self.layout.forces("deflection", deflection, &mut now)?;
@@ -111,13 +110,19 @@ impl PyRobot {
         self.inverses.with(&self.robot, wanted, |inverse| {
             self.check(inverse.smoothness().joints, motion.order)?;
             inverse.set_deflection(&now);
-            if deflection.is_none() && inverse.smoothness().joints.iter().any(|j| j.damped) {
-                let at_rest = External { tau: loads.get(..nv).unwrap_or(&[]), wrenches: &[] };
+            let damped = inverse.smoothness().joints.iter().any(|j| j.damped);
+            if damped && step == 0.0 && motion.times.is_some_and(|times| times > 1) {
+                let problem = "it is 0, but damped transmissions deflect from each time to the next";
+                return Err(errors::argument("step", problem, "give the time between the rows"));
+            }
+            if deflection.is_none() && damped {
+                let at_rest = External { tau: loads.at(0).get(..nv).unwrap_or(&[]), wrenches: &[] };
                 inverse.rest(motion.positions(0), at_rest).map_err(errors::raise)?;
             }
             let mut found = PyElasticInverse::new(nv, motion.times, torque_derivatives);
             let mut run = || {
                 for k in 0..motion.times.unwrap_or(1) {
+                    let ext = External { tau: loads.at(k), wrenches: &[] };
                     inverse.at(motion.positions(k), motion.derivatives(k), ext, step)?;
                     inverse.advance();
                     found.push(inverse);
@@ -133,6 +138,18 @@ impl PyRobot {
 
 const DERIVATIVES: &str = "give a row for each derivative, the velocities first, with one entry per velocity coordinate in the order of \
                            `joint_names`; a floating root leads with six";
+
+/// Loads from outside with their derivatives, the same all the time or with a width for every time.
+struct Loads {
+    width: Option<usize>,
+    all: Vec<f64>,
+}
+
+impl Loads {
+    fn at(&self, k: usize) -> &[f64] {
+        self.width.map_or(&self.all[..], |width| &self.all[k * width..][..width])
+    }
+}
 
 /// A motion of the links, of one moment or over time.
 struct Motion {
@@ -193,15 +210,36 @@ impl PyRobot {
         Ok(Wanted { fidelity, torque_derivatives, damping })
     }
 
-    /// Loads with their derivatives, one row after the other; empty for none.
-    fn loads(&self, value: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
-        let Some(value) = value else { return Ok(Vec::new()) };
-        if value.getattr("ndim").and_then(|n| n.extract::<usize>()).is_ok_and(|axes| axes == 2) {
-            return read_rows("tau_ext", value, self.layout.nv, DERIVATIVES);
+    /// Loads with their derivatives, one row after the other; none for none.
+    fn loads(&self, value: Option<&Bound<'_, PyAny>>, times: Option<usize>) -> PyResult<Loads> {
+        let nv = self.layout.nv;
+        let Some(value) = value else { return Ok(Loads { width: None, all: Vec::new() }) };
+        let array = numbers("tau_ext", value)?;
+        let Some(times) = times.filter(|_| array.ndim() > 1) else {
+            if array.ndim() == 2 {
+                return Ok(Loads { width: None, all: read_rows("tau_ext", value, nv, DERIVATIVES)? });
+            }
+            let mut all = vec![0.0; nv];
+            self.layout.forces("tau_ext", value, &mut all)?;
+            return Ok(Loads { width: None, all });
+        };
+        let shape = array.shape();
+        if !matches!(shape, &[n, _] | &[n, _, _] if n == times) {
+            let problem = format!("an array of shape {} is given, but there are {times} times", text_of(shape));
+            let remedy = format!("give ({nv},), ({times}, {nv}), or ({times}, rows, {nv})");
+            return Err(errors::shape("tau_ext", problem, remedy));
         }
-        let mut load = vec![0.0; self.layout.nv];
-        self.layout.forces("tau_ext", value, &mut load)?;
-        Ok(load)
+        let (rows, mut all) = (if shape.len() == 3 { shape[1] } else { 1 }, Vec::new());
+        for row in value.try_iter()? {
+            if shape.len() == 3 {
+                all.extend(read_rows("tau_ext", &row?, nv, DERIVATIVES)?);
+            } else {
+                let mut load = vec![0.0; nv];
+                self.layout.forces("tau_ext", &row?, &mut load)?;
+                all.extend(load);
+            }
+        }
+        Ok(Loads { width: Some(rows * nv), all })
     }
 
     /// Whether a motion has the derivatives that are needed, joint by joint.
