@@ -140,7 +140,7 @@ pub struct InverseBatch<'a> {
 /// `tau_j`, `nv` columns each.
 ///
 /// # Errors
-/// An array whose length is not the same number of rows as the others'.
+/// An array that has neither as many rows as `q` nor a single one, which stands for all.
 pub fn forward(model: &OwnedModel, given: ForwardBatch, out: Forward<f64>) -> Result<(), Error> {
     let ForwardBatch { q, qd, theta, thetad, tau } = given;
     let rows = rows::count("q", q, model.nq())?;
@@ -152,7 +152,7 @@ pub fn forward(model: &OwnedModel, given: ForwardBatch, out: Forward<f64>) -> Re
 /// each.
 ///
 /// # Errors
-/// An array whose length is not the same number of rows as the others'.
+/// An array that has neither as many rows as `q` nor a single one, which stands for all.
 pub fn inverse(model: &OwnedModel, given: InverseBatch, out: Inverse<f64>) -> Result<(), Error> {
     let InverseBatch { q, qd, theta, thetad, qdd, thetadd } = given;
     let rows = rows::count("q", q, model.nq())?;
