@@ -26,6 +26,24 @@ fn every_language_has_its_files() {
     }
 }
 
+/// Made again by the command that its first lines name, a file is the same.
+#[test]
+fn files_name_the_command_that_makes_them_again() {
+    let here = pendulum("codegen_again");
+    let set = "drives.hinge.transmission.stiffness=123";
+    let first = gyroflex(&here, &["codegen", "robot.yaml", "--lang", "python", "--set", set, "-o", "one"]);
+    assert_eq!(first.code, Some(0), "{}", first.err);
+    let read = |folder: &str| std::fs::read_to_string(here.join(folder).join("pendulum.py")).expect("it was written");
+    let text = read("one");
+    let line = text.lines().find_map(|line| line.trim().strip_prefix("gyroflex ")).expect("it names a command");
+    let again: Vec<&str> = line.split(' ').map(|word| word.trim_matches('\'')).chain(["-o", "two"]).collect();
+    let second = gyroflex(&here, &again);
+    assert_eq!(second.code, Some(0), "{}", second.err);
+    assert_eq!(read("two"), text);
+    assert!(gyroflex(&here, &["codegen", "robot.yaml", "--lang", "python", "-o", "three"]).code == Some(0));
+    assert_ne!(read("three"), text);
+}
+
 #[test]
 fn report_says_what_functions_take_give_and_cost() {
     let here = pendulum("codegen_report");
@@ -76,6 +94,7 @@ fn what_cannot_be_generated_is_refused_by_element_and_remedy() {
         ("no part", &["robot.yaml", "--split", "0"], &["--split", "at least 1"]),
         ("parts in C", &["robot.yaml", "--split", "2", "--lang", "c"], &["--split", "--lang rust"]),
         ("lanes in C", &["robot.yaml", "--lanes", "4", "--lang", "c"], &["--lanes", "--lang rust"]),
+        ("outside the folder", &["robot.yaml", "--name", "../evil"], &["--name", "letters, digits"]),
         ("no tolerance", &["robot.yaml", "--simplify-to", "NaN"], &["--simplify-to", "1e-3"]),
         ("a file for a folder", &["robot.yaml", "-o", "taken"], &["taken", "cannot be written"]),
         ("no scenario", &["robot.yaml", "--simplify-to", "0", "--along", "no.yaml"], &["no.yaml"]),

@@ -158,35 +158,3 @@ fn names_with_signs_of_latex_are_text() {
     let text = document(&arm).text;
     assert!(text.contains(r"a\_b\%c\&d\#e\$f\{g\}\textasciitilde{}h\textasciicircum{}i\textbackslash{}j"), "{text}");
 }
-
-/// Writes the documents of the project's robots where `GYROFLEX_LATEX` says, to be looked at.
-#[test]
-#[ignore = "writes files"]
-fn write() {
-    let folder = std::env::var("GYROFLEX_LATEX").expect("a folder");
-    let mut elastic = shipped::two_link(true);
-    elastic.name = "book_two_link_elastic".to_owned();
-    let mut reflected = shipped::planar_2r(Fidelity::RigidReflected);
-    reflected.name = "planar_2r_rigid".to_owned();
-    for arm in [
-        shipped::planar_2r(Fidelity::Complete),
-        reflected,
-        shipped::two_link(false),
-        elastic,
-        shipped::puma560(Fidelity::Complete, 1.0),
-    ] {
-        let file = document(&arm);
-        std::fs::write(format!("{folder}/{}", file.name), file.text).expect("the folder is there");
-    }
-    let arm = shipped::planar_2r(Fidelity::Complete);
-    let robot = arm.robot();
-    let head = Head {
-        robot: "planar_2r_kept".to_owned(),
-        model: "complete".to_owned(),
-        command: "gyroflex codegen --keep all".to_owned(),
-    };
-    let options = Options { kept: Parameter::all(&robot), ..Options::default() };
-    let model = ExplicitModel::of(&robot, &options).expect("nothing in it is not explicit");
-    let file = latex::document(&model, &head);
-    std::fs::write(format!("{folder}/{}", file.name), file.text).expect("the folder is there");
-}

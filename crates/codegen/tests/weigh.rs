@@ -6,7 +6,6 @@ use arms::{Arm, numbers, options, seeds, shipped};
 use gyroflex::model::Fidelity;
 use gyroflex_codegen::explicit::{ExplicitModel, Options};
 use gyroflex_codegen::function::Function;
-use gyroflex_codegen::optimise::optimise;
 use gyroflex_codegen::quantity::{Options as Choices, Quantity, function};
 use gyroflex_codegen::weigh::{Motion, Place, rank, simplify};
 use gyroflex_testkit::random::Options as Random;
@@ -276,41 +275,5 @@ fn the_largest_weight_is_first_and_what_does_nothing_weighs_nothing() {
     };
     for weight in rank(&model, &[rest]) {
         assert_eq!(weight.contribution > 0.0, weight.place == Place::Potential, "{weight:?}");
-    }
-}
-
-/// The table of the documentation: `cargo test -p gyroflex-codegen --test weigh -- --ignored --nocapture`.
-#[test]
-#[ignore = "prints figures"]
-fn figures() {
-    let random = Random { prismatic: 0.0, branching: 0.0, driven: 1.0, elastic: 1.0, ..options(6..=6) };
-    for arm in [shipped::puma560(Fidelity::Complete, 1.0), Arm::in_model(1, &random, Fidelity::Complete)] {
-        let begun = std::time::Instant::now();
-        let whole = explicit(&arm);
-        println!("{}: {} terms in {:?}", arm.name, whole.terms(), begun.elapsed());
-        let motion = shipped::waves(&arm, 50);
-        for quantity in [Quantity::Forward, Quantity::Inverse] {
-            let library = function(&arm.robot(), quantity, &Choices::default()).expect("every robot has it");
-            println!("{}: {} operations by recursion", quantity.name(), library.operations().total());
-            let short = optimise(&whole.function(quantity).expect("explicit equations say it"));
-            println!("{}: {} operations of explicit equations, optimised", quantity.name(), short.operations().total());
-        }
-        println!("| tolerance | terms | restored | forward, inverse | torque error | acceleration error | uncoupled |");
-        for tolerance in [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1] {
-            let begun = std::time::Instant::now();
-            let r = simplify(&whole, &motion, tolerance).report;
-            println!(
-                "| {tolerance:e} | {} of {} | {} | {}, {} | {:.1e} | {:.1e} | {} | {:?}",
-                r.kept,
-                r.terms,
-                r.restored,
-                r.forward_operations,
-                r.inverse_operations,
-                r.torque_error(),
-                r.acceleration_error(),
-                r.uncoupled,
-                begun.elapsed()
-            );
-        }
     }
 }

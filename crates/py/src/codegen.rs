@@ -123,14 +123,6 @@ impl PyRobot {
         if along.is_some() && simplify_to.is_none() {
             return Err(errors::argument("along", "no terms are dropped", "give simplify_to, too, such as 1e-3"));
         }
-        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        if let Some(name) = name.as_ref().filter(|name| name.is_empty() || !name.chars().all(plain)) {
-            let remedy = "give letters, digits and underscores";
-            return Err(errors::argument("name", format!("`{name}` is no name of a file and of functions"), remedy));
-        }
-        if what.as_ref().is_some_and(Names::is_empty) {
-            return Err(errors::argument("what", "nothing is asked for", "name a quantity, or `all`"));
-        }
         let request = Request {
             what: what.map_or_else(|| vec!["forward".to_owned(), "inverse".to_owned()], Names::all),
             target,
@@ -141,6 +133,7 @@ impl PyRobot {
             simplify: simplify_to.map(|tolerance| Simplify { tolerance, along }),
             split,
             stem: name,
+            overrides: self.options.overrides.clone(),
         };
         let generated = py.detach(|| {
             let (mut signal, mut looked) = (Ok(()), Instant::now());
@@ -169,10 +162,6 @@ enum Names {
 }
 
 impl Names {
-    fn is_empty(&self) -> bool {
-        matches!(self, Self::Many(names) if names.is_empty())
-    }
-
     fn all(self) -> Vec<String> {
         match self {
             Self::One(name) => vec![name],

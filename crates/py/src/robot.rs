@@ -271,61 +271,6 @@ impl PyRobot {
         self.evaluate(py, Algorithm::InverseDynamics, model, &arguments, out, single)
     }
 
-    /// Inertia matrix `M(q)` of the link side, shape `(nv, nv)` [kg m², kg m, kg]; rigidly geared rotors are fully in.
-    ///
-    /// Parameters
-    /// ----------
-    /// q
-    ///     Joint positions, shape `(nq,)` [rad or m].
-    /// model
-    ///     Which physics of the motors.
-    #[pyo3(signature = (q, *, model=None, out=None))]
-    fn mass_matrix<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        model: Option<&str>,
-        out: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let single = || {
-            self.with(model, |w| {
-                self.layout.positions(q, &mut w.q)?;
-                w.dynamics.mass_matrix(&w.q, &mut w.matrix).map_err(errors::raise)?;
-                Ok(matrix(py, "mass matrix", &w.matrix, self.layout.nv)?.into_any())
-            })
-        };
-        let arguments = [("q", Some(q), Need::Always)];
-        self.evaluate(py, Algorithm::MassMatrix, model, &arguments, out, single)
-    }
-
-    /// Inertial coupling `S(q)` of link accelerations (rows) and motor accelerations (columns) seen from the link side,
-    /// shape `(nv, nv)` [kg m², kg m, kg]; zero in columns of joints without an elastic transmission.
-    ///
-    /// Parameters
-    /// ----------
-    /// q
-    ///     Joint positions, shape `(nq,)` [rad or m].
-    /// model
-    ///     Which physics of the motors; the coupling is zero in all but the complete one.
-    #[pyo3(signature = (q, *, model=None, out=None))]
-    fn coupling_matrix<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        model: Option<&str>,
-        out: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let single = || {
-            self.with(model, |w| {
-                self.layout.positions(q, &mut w.q)?;
-                w.dynamics.coupling(&w.q, &mut w.matrix).map_err(errors::raise)?;
-                Ok(matrix(py, "coupling matrix", &w.matrix, self.layout.nv)?.into_any())
-            })
-        };
-        let arguments = [("q", Some(q), Need::Always)];
-        self.evaluate(py, Algorithm::CouplingMatrix, model, &arguments, out, single)
-    }
-
     /// Pose of a link in the world, shape `(4, 4)`: rotation from the link's axes to the world's, position of its origin [m].
     ///
     /// Parameters

@@ -103,7 +103,13 @@ def test_modules_of_one_robot_are_independent(puma: gyroflex.Robot) -> None:
 
 @pytest.mark.parametrize("name", ["../evil", "", "a b", "a\0b"])
 def test_names_are_names_of_files_and_functions(puma: gyroflex.Robot, name: str) -> None:
-    with pytest.raises(gyroflex.ArgumentError, match="letters, digits"):
+    with pytest.raises(gyroflex.Error, match="letters, digits"):
         puma.codegen(name=name)
-    with pytest.raises(gyroflex.ArgumentError, match="nothing is asked for"):
+    with pytest.raises(gyroflex.Error, match="nothing is asked for"):
         puma.codegen([])
+
+
+def test_files_say_what_a_changed_copy_has_otherwise(puma: gyroflex.Robot) -> None:
+    with pytest.warns(gyroflex.RobotWarning):
+        soft = puma.with_(stiffness={"joint2": 1e4})
+    assert "--set 'drives.joint2.transmission.stiffness=10000.0'" in soft.codegen("inverse").files["puma560.py"]

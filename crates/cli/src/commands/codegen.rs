@@ -23,6 +23,7 @@ pub fn run(args: &Codegen, quiet: bool) -> Result<(), Failure> {
         simplify: args.simplify_to.map(|tolerance| Simplify { tolerance, along }),
         split: args.split,
         stem: args.name.clone(),
+        overrides: args.set.overrides(),
     };
     let stop = stop_flag(quiet, "end the generation");
     let bar = progress_bar(quiet, "generating");

@@ -2,6 +2,7 @@
 
 use super::symbolic;
 use crate::error::{Error, ErrorKind};
+use crate::load::Overrides;
 use crate::robot::Robot;
 use crate::scenario::ScenarioFile;
 use gyroflex::dynamics::Axes;
@@ -50,6 +51,8 @@ pub struct Request {
     pub split: Option<usize>,
     /// Name of the files without what the language appends; `None` is the robot's.
     pub stem: Option<String>,
+    /// What the robot has otherwise than its files say, for the command that generated code repeats.
+    pub overrides: Overrides,
 }
 
 impl Request {
@@ -62,6 +65,16 @@ impl Request {
     pub(super) fn check(&self, robot: &Robot) -> Result<(), Error> {
         let rust = self.target == Target::Code(Language::Rust);
         let wrong = |element: &str, problem: &str, remedy: &str| Err(wrong(robot, element, problem.to_owned(), remedy));
+        if self.stem.as_ref().is_some_and(|stem| stem.is_empty() || identifier(stem) != stem.to_ascii_lowercase()) {
+            return wrong(
+                "--name",
+                "it is no name of a file and of functions",
+                "give letters, digits and underscores, a letter first",
+            );
+        }
+        if self.what.is_empty() {
+            return wrong("--what", "nothing is asked for", "name a quantity, or `all`");
+        }
         match (self.split, self.style.lanes, &self.simplify) {
             (Some(_), ..) if !rust => {
                 wrong("--split", "parts are run side by side by Rust alone", "choose --lang rust")
@@ -119,6 +132,10 @@ impl Request {
         if self.target != Target::Latex {
             command += &format!(" --what {}", self.what.join(","));
             command += if self.style.precision == Precision::Single { " --scalar f32" } else { "" };
+        }
+        command += if robot.is_floating() { " --floating" } else { "" };
+        for (key, value) in self.overrides.iter() {
+            command += &format!(" --set '{key}={value}'");
         }
         for name in &self.kept {
             command += &format!(" --keep-symbol {name}");

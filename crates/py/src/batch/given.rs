@@ -1,0 +1,145 @@
+//! What a call is given: arrays over the joints, of one state or a batch.
+
+use crate::arguments::{Layout, ROOT};
+use crate::arrays::{numbers, text_of};
+use crate::errors;
+use gyroflex_sim::batch::Real;
+use gyroflex_sim::eval::unit_quaternion;
+use numpy::{
+    Element, PyArray1, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::prelude::*;
+
+/// When an array must be given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Need {
+    Always,
+    /// Where the model has elastic joints.
+    Elastic,
+    Never,
+}
+
+/// An argument that is an array over the joints: its name, its value, and when there must be one.
+pub(crate) type Argument<'a, 'py> = (&'static str, Option<&'a Bound<'py, PyAny>>, Need);
+
+/// A number of NumPy's that lanes compute with.
+pub(crate) trait Float: Real + Element + Into<f64> {}
+impl<F: Real + Element + Into<f64>> Float for F {}
+
+/// The arrays of a call that is not about one state in float64.
+pub(super) struct Batch<'py> {
+    pub(super) arrays: Vec<(&'static str, Bound<'py, PyUntypedArray>)>,
+    pub(super) single_precision: bool,
+    /// `None` if all are vectors.
+    pub(super) rows: Option<usize>,
+}
+
+impl<'py> Batch<'py> {
+    /// `None` if one state in float64 is given, or what it will be refused for.
+    pub(super) fn of(arguments: &[Argument<'_, 'py>]) -> PyResult<Option<Self>> {
+        let given = || arguments.iter().filter_map(|(name, value, _)| Some((*name, (*value)?)));
+        if given().all(|(_, value)| value.cast::<PyArray1<f64>>().is_ok()) {
+            return Ok(None);
+        }
+        let arrays: Vec<_> = given().map(|(name, value)| Ok((name, numbers(name, value)?))).collect::<PyResult<_>>()?;
+        let single_precision = all_single(&arrays);
+        let axes = |n: usize| arrays.iter().any(|(_, a)| a.ndim() == n);
+        if arrays.iter().any(|(_, a)| !matches!(a.ndim(), 1 | 2)) || !(axes(2) || single_precision) {
+            return Ok(None);
+        }
+        let rows = common_rows(&arrays, 2)?;
+        Ok(Some(Self { arrays, single_precision, rows }))
+    }
+}
+
+/// Whether all arrays are float32.
+pub(crate) fn all_single(arrays: &[(&'static str, Bound<'_, PyUntypedArray>)]) -> bool {
+    arrays.iter().all(|(_, a)| a.dtype().is_equiv_to(&numpy::dtype::<f32>(a.py())))
+}
+
+/// The length of the first axis of all arrays of so many axes.
+fn common_rows(arrays: &[(&'static str, Bound<'_, PyUntypedArray>)], axes: usize) -> PyResult<Option<usize>> {
+    let mut first: Option<(&str, usize)> = None;
+    for (name, array) in arrays.iter().filter(|(_, a)| a.ndim() == axes) {
+        let rows = array.shape()[0];
+        match first {
+            None => first = Some((name, rows)),
+            Some((other, expected)) if rows != expected => {
+                let problem = format!("it has {rows} rows, but `{other}` has {expected}");
+                return Err(errors::shape(name, problem, "give arrays of the same batch, or one row for all"));
+            }
+            Some(_) => {}
+        }
+    }
+    Ok(first.map(|(_, rows)| rows))
+}
+
+/// An array of numbers one after the other: the caller's, or a copy that is padded or tidied.
+pub(crate) enum Numbers<'py, F: Element> {
+    Array(PyReadonlyArrayDyn<'py, F>),
+    Own(Vec<F>),
+}
+
+impl<F: Element> Numbers<'_, F> {
+    pub(crate) fn slice(&self) -> &[F] {
+        match self {
+            Self::Array(array) => array.as_slice().unwrap_or_default(),
+            Self::Own(numbers) => numbers,
+        }
+    }
+}
+
+/// Reads an array whose last axis runs over the joints; `name` says whether over positions, and whether a root may be left out.
+pub(crate) fn columns<'py, F: Float>(
+    layout: &Layout,
+    name: &str,
+    array: &Bound<'py, PyUntypedArray>,
+) -> PyResult<Numbers<'py, F>> {
+    let py = array.py();
+    let shape = array.shape();
+    let given = shape.last().copied().unwrap_or(0);
+    let (positions, rootless) = (name.starts_with('q') && !name.starts_with("qd"), !name.starts_with('q'));
+    let n = if positions { layout.nq } else { layout.nv };
+    let padded = layout.floating && rootless && given + ROOT == n;
+    if given != n && !padded {
+        let problem = format!("an array of shape {} is given, but ({n},) or (batch, {n}) is expected", text_of(shape));
+        return Err(errors::shape(name, problem, "give one entry per coordinate in the last axis"));
+    }
+    let tidy = py.import("numpy")?.call_method1("ascontiguousarray", (array, numpy::dtype::<F>(py)))?;
+    let array = tidy.cast_into::<PyArrayDyn<F>>()?.try_readonly()?;
+    let all = array.as_slice().unwrap_or_default();
+    if let Some(i) = all.iter().position(|x| !x.is_finite()) {
+        let index = if shape.len() > 1 { format!("[{}, {}]", i / given, i % given) } else { i.to_string() };
+        return Err(errors::not_finite(name, index, all[i].into()));
+    }
+    if padded {
+        let root = [F::from_f64(0.0); ROOT];
+        return Ok(Numbers::Own(all.chunks(given.max(1)).flat_map(|row| root.iter().chain(row)).copied().collect()));
+    }
+    if !(positions && layout.floating) {
+        return Ok(Numbers::Array(array));
+    }
+    let mut all = all.to_vec();
+    for row in all.chunks_mut(n) {
+        let mut quaternion: [f64; 4] = core::array::from_fn(|i| row[3 + i].into());
+        unit_quaternion(&mut quaternion).map_err(|e| errors::argument(name, e.problem, e.remedy))?;
+        row[3..7].iter_mut().zip(quaternion).for_each(|(to, from)| *to = F::from_f64(from));
+    }
+    Ok(Numbers::Own(all))
+}
+
+/// Refuses a call that lacks an array.
+pub(crate) fn all_given(arguments: &[Argument<'_, '_>], elastic: bool) -> PyResult<()> {
+    for (name, value, need) in arguments {
+        let problem = match need {
+            Need::Always => "it is missing",
+            Need::Elastic if elastic => "it is missing, but the robot has elastic joints in this model",
+            _ => continue,
+        };
+        if value.is_none() {
+            return Err(errors::argument(name, problem, "give one entry per joint, zeros for none"));
+        }
+    }
+    Ok(())
+}

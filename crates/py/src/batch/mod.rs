@@ -1,0 +1,176 @@
+//! Calls over batches: arrays of shape `(batch, n)` in lanes and on all cores, with the interpreter released.
+
+mod given;
+mod out;
+
+pub(crate) use given::{Argument, Float, Need, Numbers, all_given, all_single, columns};
+pub(crate) use out::{Shape, results, together, write};
+
+use crate::errors;
+use crate::robot::PyRobot;
+use crate::workspace::Workspace;
+use given::Batch;
+use gyroflex_sim::Dynamics;
+use gyroflex_sim::batch::{self, Algorithm, Given};
+use out::{all_finite, fill};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+/// The results of an algorithm that Python sees, the first ones of what it computes.
+fn shapes(algorithm: Algorithm, nv: usize) -> Vec<Shape> {
+    let each = |names: &[&'static str], shape: &[usize]| names.iter().map(|name| (*name, shape.to_vec())).collect();
+    match algorithm {
+        Algorithm::ForwardDynamics => each(&["qdd", "thetadd"], &[nv]),
+        Algorithm::InverseDynamics => each(&["tau_j", "tau"], &[nv]),
+        Algorithm::MassMatrix => each(&["mass matrix"], &[nv, nv]),
+        Algorithm::CouplingMatrix => each(&["coupling matrix"], &[nv, nv]),
+        Algorithm::CoriolisMatrices => each(&["C", "C1", "C2"], &[nv, nv]),
+        Algorithm::InertiaRates => each(&["dM", "dS"], &[nv, nv]),
+        Algorithm::Bias => each(&["link", "motor"], &[nv]),
+        Algorithm::GravityTorques => each(&["gravity torques"], &[nv]),
+        Algorithm::Energy => each(&["kinetic", "gravity", "elastic"], &[]),
+        Algorithm::Placement(..) => each(&["placement"], &[4, 4]),
+        Algorithm::Jacobian(..) => each(&["jacobian"], &[6, nv]),
+    }
+}
+
+impl PyRobot {
+    /// Runs an algorithm over what is given: one state in float64 as `single` does it, all else in lanes. `out` takes the results
+    /// if there is one.
+    pub(crate) fn evaluate<'py>(
+        &self,
+        py: Python<'py>,
+        algorithm: Algorithm,
+        model: Option<&str>,
+        arguments: &[Argument<'_, 'py>],
+        out: Option<&Bound<'py, PyAny>>,
+        single: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        // Links that bend have no lanes: one state of them is computed in float64, whatever it is given in.
+        let batch = Batch::of(arguments)?.filter(|batch| batch.rows.is_some() || self.layout.modes == 0);
+        match (batch, out) {
+            (None, None) => single(),
+            (None, Some(out)) => fill(&shapes(algorithm, self.layout.nv), &single()?, out),
+            (Some(batch), out) if batch.single_precision => {
+                self.in_lanes::<f32>(py, algorithm, model, arguments, &batch, out)
+            }
+            (Some(batch), out) => self.in_lanes::<f64>(py, algorithm, model, arguments, &batch, out),
+        }
+    }
+
+    fn in_lanes<'py, F: Float>(
+        &self,
+        py: Python<'py>,
+        algorithm: Algorithm,
+        model: Option<&str>,
+        arguments: &[Argument<'_, 'py>],
+        batch: &Batch<'py>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let given: Vec<(&str, Numbers<'py, F>)> = batch
+            .arrays
+            .iter()
+            .map(|(name, array)| Ok((*name, columns(&self.layout, name, array)?)))
+            .collect::<PyResult<_>>()?;
+        let of = |name: &str| given.iter().find(|(n, _)| *n == name).map_or(&[][..], |(_, numbers)| numbers.slice());
+        let states = Given {
+            q: of("q"),
+            qd: of("qd"),
+            theta: of("theta"),
+            thetad: of("thetad"),
+            qdd: of("qdd"),
+            thetadd: of("thetadd"),
+            tau: of("tau"),
+            tau_ext: of("tau_ext"),
+        };
+        let shapes: Vec<Shape> = shapes(algorithm, self.layout.nv)
+            .into_iter()
+            .map(|(name, shape)| (name, batch.rows.into_iter().chain(shape).collect()))
+            .collect();
+        let rows = batch.rows.unwrap_or(1);
+        let results = results::<F>(py, &shapes, out)?;
+        self.with(model, |w| {
+            all_given(arguments, w.elastic)?;
+            write(&results, |slices| {
+                let model = w.dynamics.owned_model();
+                py.detach(|| batch::evaluate(model, algorithm, rows, states, slices)).map_err(errors::raise)?;
+                all_finite(&shapes, slices, batch.rows)
+            })
+        })?;
+        together(py, results.into_iter().map(Bound::into_any).collect())
+    }
+
+    /// Runs what has no lanes over what is given: one state as `read` finds it in the workspace, or a batch row by row in float64
+    /// on all cores. `shapes` are those of the results of one state.
+    #[expect(clippy::too_many_arguments, reason = "they are the call, what it takes and what it gives")]
+    pub(crate) fn by_rows<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<&str>,
+        arguments: &[Argument<'_, 'py>],
+        shapes: &[Shape],
+        out: Option<&Bound<'py, PyAny>>,
+        read: impl FnOnce(&mut Workspace) -> PyResult<()>,
+        one: impl Fn(&mut Dynamics, Given<f64>, &mut [&mut [f64]]) -> Result<(), gyroflex_sim::Error> + Sync,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let batch = Batch::of(arguments)?.filter(|batch| batch.rows.is_some());
+        let rows = batch.as_ref().and_then(|batch| batch.rows);
+        let shapes: Vec<Shape> = shapes
+            .iter()
+            .map(|(name, shape)| (*name, rows.into_iter().chain(shape.iter().copied()).collect()))
+            .collect();
+        let results = results::<f64>(py, &shapes, out)?;
+        self.with(model, |w| {
+            let Some(batch) = batch else {
+                read(w)?;
+                return write(&results, |slices| {
+                    let Workspace { dynamics, q, qd, theta, thetad, qdd, thetadd, tau, tau_ext, .. } = w;
+                    one(dynamics, Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext }, slices)
+                        .map_err(errors::raise)?;
+                    all_finite(&shapes, slices, None)
+                });
+            };
+            all_given(arguments, w.elastic)?;
+            let given: Vec<(&str, Numbers<'py, f64>)> = batch
+                .arrays
+                .iter()
+                .map(|(name, array)| Ok((*name, columns(&self.layout, name, array)?)))
+                .collect::<PyResult<_>>()?;
+            let arrays: Vec<(&str, &[f64])> = given.iter().map(|(name, numbers)| (*name, numbers.slice())).collect();
+            let zeros = vec![0.0; self.layout.nv];
+            let row = |k: usize| {
+                let of = |name: &str, width: usize| match arrays.iter().find(|(n, _)| *n == name) {
+                    None => &zeros[..],
+                    Some((_, all)) if all.len() == width => all,
+                    Some((_, all)) => &all[k * width..][..width],
+                };
+                let vector = |name: &str| of(name, self.layout.nv);
+                Given {
+                    q: of("q", self.layout.nq),
+                    qd: vector("qd"),
+                    theta: vector("theta"),
+                    thetad: vector("thetad"),
+                    qdd: vector("qdd"),
+                    thetadd: vector("thetadd"),
+                    tau: vector("tau"),
+                    tau_ext: vector("tau_ext"),
+                }
+            };
+            write(&results, |slices| {
+                let count = rows.unwrap_or(1);
+                let mut tasks: Vec<Vec<&mut [f64]>> = (0..count).map(|_| Vec::new()).collect();
+                for slice in slices.iter_mut() {
+                    let width = slice.len() / count.max(1);
+                    tasks.iter_mut().zip(slice.chunks_mut(width.max(1))).for_each(|(task, row)| task.push(row));
+                }
+                let dynamics = &w.dynamics;
+                let run =
+                    |dynamics: &mut Dynamics, (k, mut out): (usize, Vec<&mut [f64]>)| one(dynamics, row(k), &mut out);
+                py.detach(|| tasks.into_par_iter().enumerate().try_for_each_init(|| dynamics.clone(), run))
+                    .map_err(errors::raise)?;
+                all_finite(&shapes, slices, rows)
+            })
+        })?;
+        together(py, results.into_iter().map(Bound::into_any).collect())
+    }
+}
