@@ -1,9 +1,8 @@
 //! Batches over the cores: states a second of the whole machine, with one thread, two, four, ... up to its cores.
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use gyroflex::dynamics::Forward;
 use gyroflex::model::Fidelity;
-use gyroflex_sim::batch::{ForwardBatch, forward};
+use gyroflex_sim::batch::{Algorithm, Given, evaluate};
 use gyroflex_sim::load::{LoadOptions, load};
 use rayon::ThreadPoolBuilder;
 use std::{path::Path, thread, time::Duration};
@@ -30,9 +29,9 @@ fn batch(c: &mut Criterion) {
         group.bench_function(format!("{threads} threads"), |b| {
             b.iter(|| {
                 pool.install(|| {
-                    let given = ForwardBatch { q: &q, qd: &qd, theta: &theta, thetad: &thetad, tau: &tau };
-                    let out = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
-                    forward(&model, given, out)
+                    let given = Given { q: &q, qd: &qd, theta: &theta, thetad: &thetad, tau: &tau, ..Given::default() };
+                    let out = &mut [&mut qdd[..], &mut thetadd, &mut tau_j];
+                    evaluate(&model, &Algorithm::ForwardDynamics, STATES, given, out)
                 })
                 .expect("all have the length of the batch");
             });

@@ -59,6 +59,8 @@ def main() -> None:
     accelerations = (qd, theta, thetad, qd)
     report("gyroflex inverse_dynamics, batch", best(lambda: robot.inverse_dynamics(q, qd, *accelerations)), ROWS)
     report("gyroflex mass_matrix, batch", best(lambda: robot.mass_matrix(q)), ROWS)
+    room = np.empty((ROWS, n, n))
+    report("gyroflex mass_matrix, batch, out=", best(lambda: robot.mass_matrix(q, out=room)), ROWS)
     few = [a[:512] for a in state]
     start = dict(zip(("q0", "qd0", "theta0", "thetad0"), few, strict=True))
     torques = rng.normal(size=(512, STEPS, n))

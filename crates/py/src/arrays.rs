@@ -156,13 +156,6 @@ where
     PyArray1::from_slice(py, numbers).reshape(shape)
 }
 
-/// A matrix from its rows, of so many columns.
-pub(crate) fn rectangle<'py>(py: Python<'py>, name: &str, rows: &[Vec<f64>], columns: usize) -> PyResult<Matrix<'py>> {
-    let numbers = rows.concat();
-    check_result(name, &numbers)?;
-    PyArray1::from_vec(py, numbers).reshape([rows.len(), columns])
-}
-
 /// A result of complex numbers.
 pub(crate) fn complexes<'py>(
     py: Python<'py>,
@@ -175,6 +168,6 @@ pub(crate) fn complexes<'py>(
 }
 
 /// Nothing that is not a number leaves this house.
-fn check_result(name: &str, numbers: &[f64]) -> PyResult<()> {
+pub(crate) fn check_result(name: &str, numbers: &[f64]) -> PyResult<()> {
     if numbers.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(errors::overflow(name)) }
 }

@@ -159,7 +159,7 @@ impl PyRobot {
 
 impl PyRobot {
     /// Positions, velocities and accelerations of joints and motors.
-    fn motion_of(
+    pub(crate) fn motion_of(
         &self,
         w: &mut Workspace,
         [q, qd, qdd]: [&Bound<'_, PyAny>; 3],
@@ -171,7 +171,8 @@ impl PyRobot {
     }
 }
 
-fn motion_arguments<'a, 'py>(
+/// The arrays of a motion.
+pub(crate) fn motion_arguments<'a, 'py>(
     [q, qd, qdd]: [&'a Bound<'py, PyAny>; 3],
     [theta, thetad, thetadd]: [Option<&'a Bound<'py, PyAny>>; 3],
     tau_ext: Option<&'a Bound<'py, PyAny>>,
@@ -187,15 +188,18 @@ fn motion_arguments<'a, 'py>(
     ]
 }
 
-fn state<'a>(s: &Given<'a, f64>) -> State<'a, f64> {
+/// Positions and velocities that are given.
+pub(crate) fn state<'a>(s: &Given<'a, f64>) -> State<'a, f64> {
     State { q: s.q, qd: s.qd, theta: s.theta, thetad: s.thetad }
 }
 
-fn acceleration<'a>(s: &Given<'a, f64>) -> Acceleration<'a, f64> {
+/// Accelerations that are given.
+pub(crate) fn acceleration<'a>(s: &Given<'a, f64>) -> Acceleration<'a, f64> {
     Acceleration { qdd: s.qdd, thetadd: s.thetadd }
 }
 
-fn load<'a>(s: &Given<'a, f64>) -> External<'a, f64> {
+/// The load from outside that is given.
+pub(crate) fn load<'a>(s: &Given<'a, f64>) -> External<'a, f64> {
     External { tau: s.tau_ext, wrenches: &[] }
 }
 

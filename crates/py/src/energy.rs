@@ -5,7 +5,7 @@ use crate::batch::Need;
 use crate::errors;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
-use gyroflex::dynamics::{self, Axes, Frame, State};
+use gyroflex::dynamics::{Axes, State};
 use gyroflex_sim::batch::Algorithm;
 use pyo3::prelude::*;
 
@@ -54,7 +54,7 @@ impl PyRobot {
             ("theta", theta, Need::Elastic),
             ("thetad", thetad, Need::Elastic),
         ];
-        self.evaluate(py, Algorithm::Energy, model, &arguments, out, single)
+        self.evaluate(py, &Algorithm::Energy, model, &arguments, out, single)
     }
 
     /// Jacobian of a link's frame, shape `(6, nv)` or `(batch, 6, nv)`, angular rows first: times `qd` it is the frame's angular
@@ -79,26 +79,20 @@ impl PyRobot {
         axes: &str,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let link = self.link(frame)?;
-        let Some(body) = link.body else {
+        let link = self.frame(frame)?;
+        if !link.moves() {
             return Err(errors::argument("frame", format!("the link `{frame}` does not move"), "name a moving link"));
-        };
-        if self.layout.modes > 0 {
-            let problem = "the robot has links that bend";
-            return Err(errors::argument("frame", problem, "take the robot without `flexible_links`"));
         }
         let axes = crate::arguments::choice("axes", axes, &[("world", Axes::World), ("local", Axes::Local)])?;
-        let frame = Frame { body, placement: link.placement };
         let single = || {
             self.with(None, |w| {
                 self.layout.positions(q, &mut w.q)?;
-                w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
                 let nv = self.layout.nv;
                 let mut rows = vec![0.0; 6 * nv];
-                dynamics::jacobian(&w.dynamics.model(), &w.poses, frame, axes, &mut rows).map_err(errors::raise)?;
+                link.jacobian(&w.dynamics, &w.q, axes, &mut rows).map_err(errors::raise)?;
                 Ok(shaped(py, "jacobian", &rows, [6, nv])?.into_any())
             })
         };
-        self.evaluate(py, Algorithm::Jacobian(frame, axes), None, &[("q", Some(q), Need::Always)], out, single)
+        self.evaluate(py, &Algorithm::Jacobian(link.clone(), axes), None, &[("q", Some(q), Need::Always)], out, single)
     }
 }

@@ -35,7 +35,7 @@ impl PyRobot {
             })
         };
         let arguments = [("q", Some(q), Need::Always)];
-        self.evaluate(py, Algorithm::MassMatrix, model, &arguments, out, single)
+        self.evaluate(py, &Algorithm::MassMatrix, model, &arguments, out, single)
     }
 
     /// Inertial coupling `S(q)` of link accelerations (rows) and motor accelerations (columns) seen from the link side,
@@ -63,7 +63,7 @@ impl PyRobot {
             })
         };
         let arguments = [("q", Some(q), Need::Always)];
-        self.evaluate(py, Algorithm::CouplingMatrix, model, &arguments, out, single)
+        self.evaluate(py, &Algorithm::CouplingMatrix, model, &arguments, out, single)
     }
 
     /// Blocks of the Coriolis matrix in Christoffel form, `[C, C1; C2, 0]` over joints and motors.
@@ -107,7 +107,7 @@ impl PyRobot {
         };
         let arguments =
             [("q", Some(q), Need::Always), ("qd", Some(qd), Need::Always), ("thetad", thetad, Need::Elastic)];
-        self.evaluate(py, Algorithm::CoriolisMatrices, model, &arguments, out, single)
+        self.evaluate(py, &Algorithm::CoriolisMatrices, model, &arguments, out, single)
     }
 
     /// Time derivatives of inertia matrix and coupling along a motion.
@@ -147,7 +147,7 @@ impl PyRobot {
             })
         };
         let arguments = [("q", Some(q), Need::Always), ("qd", Some(qd), Need::Always)];
-        self.evaluate(py, Algorithm::InertiaRates, model, &arguments, out, single)
+        self.evaluate(py, &Algorithm::InertiaRates, model, &arguments, out, single)
     }
 
     /// What a motion without accelerations asks for, beside friction, springs and loads.
@@ -185,7 +185,7 @@ impl PyRobot {
         };
         let arguments =
             [("q", Some(q), Need::Always), ("qd", Some(qd), Need::Always), ("thetad", thetad, Need::Elastic)];
-        self.evaluate(py, Algorithm::Bias, model, &arguments, out, single)
+        self.evaluate(py, &Algorithm::Bias, model, &arguments, out, single)
     }
 
     /// Generalised forces that hold the links against gravity, shape `(nv,)` [N m or N].
@@ -210,7 +210,7 @@ impl PyRobot {
             })
         };
         let arguments = [("q", Some(q), Need::Always)];
-        self.evaluate(py, Algorithm::GravityTorques, None, &arguments, out, single)
+        self.evaluate(py, &Algorithm::GravityTorques, None, &arguments, out, single)
     }
 }
 

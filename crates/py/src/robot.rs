@@ -11,7 +11,7 @@ use crate::workspace::{Pool, Workspace};
 use gyroflex::dynamics::{Acceleration, External, Forward, Inverse, State};
 use gyroflex_sim::Robot;
 use gyroflex_sim::batch::Algorithm;
-use gyroflex_sim::bending::CrossSection;
+use gyroflex_sim::link_frame::LinkFrame;
 use gyroflex_sim::load::LoadOptions;
 use gyroflex_sim::load::nearest::nearest;
 use gyroflex_sim::robot::Link;
@@ -37,8 +37,8 @@ use std::path::PathBuf;
 /// Where a method takes `out`, its arrays may also be of shape `(batch, n)`, any of them, and the results lead with that axis: the states
 /// are computed side by side in lanes and on all cores (`RAYON_NUM_THREADS` limits them), with the interpreter released, and agree with
 /// single calls to rounding. If all arrays are float32, so are the computation and the results; otherwise float64. `out` is an array, or a
-/// tuple of them in C order, that takes the results. Derivatives and the regressor are computed row by row, in float64. Robots with
-/// links that bend take one state a call, in float64.
+/// tuple of them in C order, that takes the results. Derivatives, the regressor, and everything of robots whose links bend are computed
+/// row by row, in float64.
 ///
 /// `model` is one of `complete`, `reduced`, `rigid`, `rigid_reflected`; the default is the one of the robot's file.
 #[pyclass(name = "Robot", module = "gyroflex", frozen)]
@@ -209,7 +209,7 @@ impl PyRobot {
             ("tau", tau, Need::Always),
             ("tau_ext", tau_ext, Need::Never),
         ];
-        self.evaluate(py, Algorithm::ForwardDynamics, model, &arguments, out, single)
+        self.evaluate(py, &Algorithm::ForwardDynamics, model, &arguments, out, single)
     }
 
     /// Torques that a motion asks for.
@@ -268,7 +268,7 @@ impl PyRobot {
             ("thetadd", thetadd, Need::Elastic),
             ("tau_ext", tau_ext, Need::Never),
         ];
-        self.evaluate(py, Algorithm::InverseDynamics, model, &arguments, out, single)
+        self.evaluate(py, &Algorithm::InverseDynamics, model, &arguments, out, single)
     }
 
     /// Pose of a link in the world, shape `(4, 4)`: rotation from the link's axes to the world's, position of its origin [m].
@@ -287,20 +287,12 @@ impl PyRobot {
         q: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let link = self.link(frame)?;
+        let frame = self.frame(frame)?;
         let single = || {
             self.with(None, |w| {
                 self.layout.positions(q, &mut w.q)?;
                 w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
-                let index = self.robot.links.iter().position(|l| l.name == link.name).unwrap_or_default();
-                let section = CrossSection::of_link(&self.robot, index);
-                let pose = match (link.body, section) {
-                    (None, _) => link.placement,
-                    (Some(body), None) => link.placement.after(w.poses[body]),
-                    (Some(body), Some(section)) => {
-                        link.placement.after(section.pose(w.dynamics.eta(&w.q)).after(w.poses[body]))
-                    }
-                };
+                let pose = frame.pose(&w.poses, w.dynamics.eta(&w.q));
                 let [x, y, z] = pose.rotation().rows.map(|row| row.to_array());
                 let p = pose.pos.to_array();
                 let rows = [x, y, z].into_iter().zip(p).flat_map(|(r, p)| [r[0], r[1], r[2], p]);
@@ -309,7 +301,7 @@ impl PyRobot {
             })
         };
         let arguments = [("q", Some(q), Need::Always)];
-        self.evaluate(py, Algorithm::Placement(link.body, link.placement), None, &arguments, out, single)
+        self.evaluate(py, &Algorithm::Placement(frame.clone()), None, &arguments, out, single)
     }
 
     fn __repr__(&self) -> String {
@@ -339,6 +331,13 @@ impl PyRobot {
             let problem = format!("the robot has no link `{frame}`");
             errors::argument("frame", problem, format!("the nearest known one is `{near}`"))
         })
+    }
+
+    /// The frame of the link of that name.
+    pub(crate) fn frame(&self, name: &str) -> PyResult<LinkFrame> {
+        let link = self.link(name)?;
+        let index = self.robot.links.iter().position(|l| l.name == link.name).unwrap_or_default();
+        Ok(LinkFrame::new(&self.robot, index))
     }
 
     pub(crate) fn with<R>(&self, model: Option<&str>, call: impl FnOnce(&mut Workspace) -> PyResult<R>) -> PyResult<R> {

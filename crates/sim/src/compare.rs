@@ -1,11 +1,11 @@
 //! Controllers side by side: how far the tip of a robot strays, and how it vibrates when it should stand still.
 
-use crate::bending::CrossSection;
 use crate::dynamics::Dynamics;
 use crate::error::{Error, ErrorKind};
+use crate::link_frame::LinkFrame;
 use crate::load::nearest::nearest;
 use crate::record::{Recorder, Sample};
-use crate::robot::{Link, Robot};
+use crate::robot::Robot;
 use crate::scenario::{Factors, Plant, ScenarioFile};
 use crate::simulate::Simulation;
 use gyroflex::spatial::{Transform, Vec3};
@@ -116,9 +116,7 @@ fn run(robot: &Robot, file: &ScenarioFile, tip: Option<&str>, plant: Variation) 
 /// Places of the tip, as it is and as the reference has it.
 struct Tips {
     dynamics: Dynamics,
-    link: Link,
-    /// What carries it on a link that bends.
-    section: Option<CrossSection>,
+    link: LinkFrame,
     poses: Vec<Transform<f64>>,
     last_reference: Vec<f64>,
     actual: Vec<Vec3<f64>>,
@@ -147,8 +145,7 @@ impl Tips {
         })?;
         Ok(Self {
             dynamics: Dynamics::new(robot.model(robot.fidelity)?),
-            link: robot.links[index].clone(),
-            section: CrossSection::of_link(robot, index),
+            link: LinkFrame::new(robot, index),
             poses: vec![Transform::identity(); robot.bodies.len()],
             last_reference: Vec::new(),
             actual: Vec::new(),
@@ -160,9 +157,7 @@ impl Tips {
     /// The tip with the joints at `q` and the modes of links that bend at `eta`.
     fn place(&mut self, q: &[f64], eta: &[f64]) -> Result<Vec3<f64>, Error> {
         self.dynamics.placements(&[q, eta].concat(), &mut self.poses)?;
-        let Some(body) = self.link.body else { return Ok(self.link.placement.pos) };
-        let carried = self.section.as_ref().map_or(self.poses[body], |s| s.pose(eta).after(self.poses[body]));
-        Ok(self.link.placement.after(carried).pos)
+        Ok(self.link.pose(&self.poses, eta).pos)
     }
 
     fn errors(&self) -> (f64, f64) {

@@ -20,6 +20,7 @@ pub mod gait;
 pub mod info;
 pub mod inverse;
 pub mod linearize;
+pub mod link_frame;
 pub mod load;
 pub mod loads;
 pub mod lqr;

@@ -53,6 +53,36 @@ impl<'py> Batch<'py> {
     }
 }
 
+/// What so many arguments are in one row of a batch.
+pub(crate) type Row<'py, const N: usize> = [Option<Bound<'py, PyAny>>; N];
+
+/// The arguments of every row of a batch, one after the other, checked; `None` if no array is a batch.
+pub(crate) fn rows<'py, const N: usize>(
+    layout: &Layout,
+    arguments: [(&'static str, Option<&Bound<'py, PyAny>>); N],
+) -> PyResult<Option<Vec<Row<'py, N>>>> {
+    let mut arrays = Vec::new();
+    for (name, value) in arguments {
+        if let Some(value) = value {
+            arrays.push((name, numbers(name, value)?));
+        }
+    }
+    let Some(rows) = common_rows(&arrays, 2)? else { return Ok(None) };
+    arrays.iter().try_for_each(|(name, array)| columns::<f64>(layout, name, array).map(drop))?;
+    let of = |name: &str, k: usize| {
+        let Some((_, array)) = arrays.iter().find(|(known, _)| *known == name) else { return Ok(None) };
+        if array.ndim() == 2 { array.get_item(k).map(Some) } else { Ok(Some(array.clone().into_any())) }
+    };
+    let row = |k: usize| -> PyResult<Row<'py, N>> {
+        let mut all = [const { None }; N];
+        for (slot, (name, _)) in all.iter_mut().zip(arguments) {
+            *slot = of(name, k)?;
+        }
+        Ok(all)
+    };
+    (0..rows).map(row).collect::<PyResult<_>>().map(Some)
+}
+
 /// Whether all arrays are float32.
 pub(crate) fn all_single(arrays: &[(&'static str, Bound<'_, PyUntypedArray>)]) -> bool {
     arrays.iter().all(|(_, a)| a.dtype().is_equiv_to(&numpy::dtype::<f32>(a.py())))
@@ -90,7 +120,8 @@ impl<F: Element> Numbers<'_, F> {
     }
 }
 
-/// Reads an array whose last axis runs over the joints; `name` says whether over positions, and whether a root may be left out.
+/// Reads an array whose last axis runs over the joints; `name` says whether over positions, and whether a root may be left out. Modes of links that
+/// bend always may.
 pub(crate) fn columns<'py, F: Float>(
     layout: &Layout,
     name: &str,
@@ -101,11 +132,12 @@ pub(crate) fn columns<'py, F: Float>(
     let given = shape.last().copied().unwrap_or(0);
     let (positions, rootless) = (name.starts_with('q') && !name.starts_with("qd"), !name.starts_with('q'));
     let n = if positions { layout.nq } else { layout.nv };
-    let padded = layout.floating && rootless && given + ROOT == n;
-    if given != n && !padded {
+    let root = if layout.floating && rootless { ROOT } else { 0 };
+    let left_out = [(0, 0), (root, 0), (0, layout.modes), (root, layout.modes)];
+    let Some((lead, trail)) = left_out.into_iter().find(|(lead, trail)| lead + given + trail == n) else {
         let problem = format!("an array of shape {} is given, but ({n},) or (batch, {n}) is expected", text_of(shape));
         return Err(errors::shape(name, problem, "give one entry per coordinate in the last axis"));
-    }
+    };
     let tidy = py.import("numpy")?.call_method1("ascontiguousarray", (array, numpy::dtype::<F>(py)))?;
     let array = tidy.cast_into::<PyArrayDyn<F>>()?.try_readonly()?;
     let all = array.as_slice().unwrap_or_default();
@@ -113,14 +145,17 @@ pub(crate) fn columns<'py, F: Float>(
         let index = if shape.len() > 1 { format!("[{}, {}]", i / given, i % given) } else { i.to_string() };
         return Err(errors::not_finite(name, index, all[i].into()));
     }
-    if padded {
-        let root = [F::from_f64(0.0); ROOT];
-        return Ok(Numbers::Own(all.chunks(given.max(1)).flat_map(|row| root.iter().chain(row)).copied().collect()));
-    }
-    if !(positions && layout.floating) {
+    let quaternions = positions && layout.floating;
+    if lead + trail == 0 && !quaternions {
         return Ok(Numbers::Array(array));
     }
-    let mut all = all.to_vec();
+    let zeros = vec![F::from_f64(0.0); lead.max(trail)];
+    let rows = all.chunks(given.max(1));
+    let mut all: Vec<F> =
+        rows.flat_map(|row| zeros[..lead].iter().chain(row).chain(&zeros[..trail])).copied().collect();
+    if !quaternions {
+        return Ok(Numbers::Own(all));
+    }
     for row in all.chunks_mut(n) {
         let mut quaternion: [f64; 4] = core::array::from_fn(|i| row[3 + i].into());
         unit_quaternion(&mut quaternion).map_err(|e| errors::argument(name, e.problem, e.remedy))?;

@@ -2,9 +2,11 @@
 
 mod given;
 mod out;
+mod table;
 
-pub(crate) use given::{Argument, Float, Need, Numbers, all_given, all_single, columns};
+pub(crate) use given::{Argument, Float, Need, Numbers, Row, all_given, all_single, columns, rows};
 pub(crate) use out::{Shape, results, together, write};
+pub(crate) use table::{Table, array};
 
 use crate::errors;
 use crate::robot::PyRobot;
@@ -17,7 +19,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 /// The results of an algorithm that Python sees, the first ones of what it computes.
-fn shapes(algorithm: Algorithm, nv: usize) -> Vec<Shape> {
+fn shapes(algorithm: &Algorithm, nv: usize) -> Vec<Shape> {
     let each = |names: &[&'static str], shape: &[usize]| names.iter().map(|name| (*name, shape.to_vec())).collect();
     match algorithm {
         Algorithm::ForwardDynamics => each(&["qdd", "thetadd"], &[nv]),
@@ -40,15 +42,13 @@ impl PyRobot {
     pub(crate) fn evaluate<'py>(
         &self,
         py: Python<'py>,
-        algorithm: Algorithm,
+        algorithm: &Algorithm,
         model: Option<&str>,
         arguments: &[Argument<'_, 'py>],
         out: Option<&Bound<'py, PyAny>>,
         single: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        // Links that bend have no lanes: one state of them is computed in float64, whatever it is given in.
-        let batch = Batch::of(arguments)?.filter(|batch| batch.rows.is_some() || self.layout.modes == 0);
-        match (batch, out) {
+        match (Batch::of(arguments)?, out) {
             (None, None) => single(),
             (None, Some(out)) => fill(&shapes(algorithm, self.layout.nv), &single()?, out),
             (Some(batch), out) if batch.single_precision => {
@@ -61,7 +61,7 @@ impl PyRobot {
     fn in_lanes<'py, F: Float>(
         &self,
         py: Python<'py>,
-        algorithm: Algorithm,
+        algorithm: &Algorithm,
         model: Option<&str>,
         arguments: &[Argument<'_, 'py>],
         batch: &Batch<'py>,
@@ -111,66 +111,107 @@ impl PyRobot {
         shapes: &[Shape],
         out: Option<&Bound<'py, PyAny>>,
         read: impl FnOnce(&mut Workspace) -> PyResult<()>,
-        one: impl Fn(&mut Dynamics, Given<f64>, &mut [&mut [f64]]) -> Result<(), gyroflex_sim::Error> + Sync,
+        one: impl OneState,
     ) -> PyResult<Bound<'py, PyAny>> {
         let batch = Batch::of(arguments)?.filter(|batch| batch.rows.is_some());
-        let rows = batch.as_ref().and_then(|batch| batch.rows);
-        let shapes: Vec<Shape> = shapes
-            .iter()
-            .map(|(name, shape)| (*name, rows.into_iter().chain(shape.iter().copied()).collect()))
-            .collect();
+        let shapes = batched(&batch, shapes);
         let results = results::<f64>(py, &shapes, out)?;
         self.with(model, |w| {
-            let Some(batch) = batch else {
-                read(w)?;
-                return write(&results, |slices| {
-                    let Workspace { dynamics, q, qd, theta, thetad, qdd, thetadd, tau, tau_ext, .. } = w;
-                    one(dynamics, Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext }, slices)
-                        .map_err(errors::raise)?;
-                    all_finite(&shapes, slices, None)
-                });
-            };
-            all_given(arguments, w.elastic)?;
-            let given: Vec<(&str, Numbers<'py, f64>)> = batch
-                .arrays
-                .iter()
-                .map(|(name, array)| Ok((*name, columns(&self.layout, name, array)?)))
-                .collect::<PyResult<_>>()?;
-            let arrays: Vec<(&str, &[f64])> = given.iter().map(|(name, numbers)| (*name, numbers.slice())).collect();
-            let zeros = vec![0.0; self.layout.nv];
-            let row = |k: usize| {
-                let of = |name: &str, width: usize| match arrays.iter().find(|(n, _)| *n == name) {
-                    None => &zeros[..],
-                    Some((_, all)) if all.len() == width => all,
-                    Some((_, all)) => &all[k * width..][..width],
-                };
-                let vector = |name: &str| of(name, self.layout.nv);
-                Given {
-                    q: of("q", self.layout.nq),
-                    qd: vector("qd"),
-                    theta: vector("theta"),
-                    thetad: vector("thetad"),
-                    qdd: vector("qdd"),
-                    thetadd: vector("thetadd"),
-                    tau: vector("tau"),
-                    tau_ext: vector("tau_ext"),
-                }
-            };
-            write(&results, |slices| {
-                let count = rows.unwrap_or(1);
-                let mut tasks: Vec<Vec<&mut [f64]>> = (0..count).map(|_| Vec::new()).collect();
-                for slice in slices.iter_mut() {
-                    let width = slice.len() / count.max(1);
-                    tasks.iter_mut().zip(slice.chunks_mut(width.max(1))).for_each(|(task, row)| task.push(row));
-                }
-                let dynamics = &w.dynamics;
-                let run =
-                    |dynamics: &mut Dynamics, (k, mut out): (usize, Vec<&mut [f64]>)| one(dynamics, row(k), &mut out);
-                py.detach(|| tasks.into_par_iter().enumerate().try_for_each_init(|| dynamics.clone(), run))
-                    .map_err(errors::raise)?;
-                all_finite(&shapes, slices, rows)
-            })
+            write(&results, |slices| self.row_by_row(py, w, arguments, batch, &shapes, slices, read, one))
         })?;
         together(py, results.into_iter().map(Bound::into_any).collect())
     }
+
+    /// The same with results that are kept until they are asked for.
+    pub(crate) fn table<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<&str>,
+        arguments: &[Argument<'_, 'py>],
+        shapes: &[Shape],
+        read: impl FnOnce(&mut Workspace) -> PyResult<()>,
+        one: impl OneState,
+    ) -> PyResult<Table> {
+        let batch = Batch::of(arguments)?.filter(|batch| batch.rows.is_some());
+        let shapes = batched(&batch, shapes);
+        let mut table = Table::new(shapes.clone());
+        self.with(model, |w| self.row_by_row(py, w, arguments, batch, &shapes, &mut table.slices(), read, one))?;
+        Ok(table)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "they are the call, what it takes and what it gives")]
+    fn row_by_row<'py>(
+        &self,
+        py: Python<'py>,
+        w: &mut Workspace,
+        arguments: &[Argument<'_, 'py>],
+        batch: Option<Batch<'py>>,
+        shapes: &[Shape],
+        results: &mut [&mut [f64]],
+        read: impl FnOnce(&mut Workspace) -> PyResult<()>,
+        one: impl OneState,
+    ) -> PyResult<()> {
+        let Some(batch) = batch else {
+            read(w)?;
+            let Workspace { dynamics, q, qd, theta, thetad, qdd, thetadd, tau, tau_ext, .. } = w;
+            one(dynamics, Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext }, results)
+                .map_err(errors::raise)?;
+            return all_finite(shapes, results, None);
+        };
+        all_given(arguments, w.elastic)?;
+        let given: Vec<(&str, Numbers<'py, f64>)> = batch
+            .arrays
+            .iter()
+            .map(|(name, array)| Ok((*name, columns(&self.layout, name, array)?)))
+            .collect::<PyResult<_>>()?;
+        let arrays: Vec<(&str, &[f64])> = given.iter().map(|(name, numbers)| (*name, numbers.slice())).collect();
+        let zeros = vec![0.0; self.layout.nv];
+        let row = |k: usize| {
+            let of = |name: &str, width: usize| match arrays.iter().find(|(n, _)| *n == name) {
+                None => &zeros[..],
+                Some((_, all)) if all.len() == width => all,
+                Some((_, all)) => &all[k * width..][..width],
+            };
+            let vector = |name: &str| of(name, self.layout.nv);
+            Given {
+                q: of("q", self.layout.nq),
+                qd: vector("qd"),
+                theta: vector("theta"),
+                thetad: vector("thetad"),
+                qdd: vector("qdd"),
+                thetadd: vector("thetadd"),
+                tau: vector("tau"),
+                tau_ext: vector("tau_ext"),
+            }
+        };
+        let count = batch.rows.unwrap_or(1);
+        let mut tasks: Vec<Vec<&mut [f64]>> = (0..count).map(|_| Vec::new()).collect();
+        for result in results.iter_mut() {
+            let width = result.len() / count.max(1);
+            let mut rest = &mut **result;
+            for task in &mut tasks {
+                let (row, others) = rest.split_at_mut(width);
+                task.push(row);
+                rest = others;
+            }
+        }
+        let dynamics = &w.dynamics;
+        let run = |dynamics: &mut Dynamics, (k, mut out): (usize, Vec<&mut [f64]>)| one(dynamics, row(k), &mut out);
+        py.detach(|| tasks.into_par_iter().enumerate().try_for_each_init(|| dynamics.clone(), run))
+            .map_err(errors::raise)?;
+        all_finite(shapes, results, batch.rows)
+    }
+}
+
+/// What is computed of one state.
+pub(crate) trait OneState:
+    Fn(&mut Dynamics, Given<f64>, &mut [&mut [f64]]) -> Result<(), gyroflex_sim::Error> + Sync
+{
+}
+impl<F: Fn(&mut Dynamics, Given<f64>, &mut [&mut [f64]]) -> Result<(), gyroflex_sim::Error> + Sync> OneState for F {}
+
+/// The shapes that results have of all rows.
+fn batched(batch: &Option<Batch<'_>>, shapes: &[Shape]) -> Vec<Shape> {
+    let rows = batch.as_ref().and_then(|batch| batch.rows);
+    shapes.iter().map(|(name, shape)| (*name, rows.into_iter().chain(shape.iter().copied()).collect())).collect()
 }

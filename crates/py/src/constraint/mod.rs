@@ -7,21 +7,23 @@ mod spec;
 pub(crate) use result::{PyConstrainedMotion, PyConstrainedTorques, PyImpact};
 pub(crate) use spec::PyConstraint;
 
-use crate::arrays::{Matrix, Vector, shaped, vector};
+use crate::batch::Need;
+use crate::derivatives::{acceleration, load, motion_arguments, state};
 use crate::errors;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
 use distribution::Distribution;
 use gyroflex::dynamics::{
-    Acceleration, Constrained, Constraint, ConstraintMotion, External, Forward, Impact, Inverse, Regularisation, State,
-    constraint_rows,
+    Constrained, Constraint, ConstraintMotion, Forward, Impact, Inverse, Regularisation, constraint_rows,
 };
 use gyroflex::spatial::Force;
+use gyroflex_sim::Dynamics;
+use gyroflex_sim::batch::Given;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use result::Forces;
 
-type Given<'py> = Vec<Bound<'py, PyConstraint>>;
+/// What a call is told to hold.
+type Held<'py> = Vec<Bound<'py, PyConstraint>>;
 
 #[pymethods]
 impl PyRobot {
@@ -40,7 +42,8 @@ impl PyRobot {
     /// Parameters
     /// ----------
     /// q, qd
-    ///     Joint positions, shape `(nq,)`, and velocities, shape `(nv,)` [rad or m, per s]. They need not keep the constraints.
+    ///     Joint positions, shape `(nq,)`, and velocities, shape `(nv,)` [rad or m, per s]. They need not keep the constraints. Any array over
+    ///     joints or motors may be a batch, `(batch, n)`, whose states are computed on all cores.
     /// theta, thetad
     ///     Motor positions and velocities seen from the link side, shape `(nv,)`. Needed if the model has elastic joints.
     /// tau
@@ -59,45 +62,58 @@ impl PyRobot {
     /// Returns
     /// -------
     /// ConstrainedMotion
-    ///     Accelerations `qdd`, `thetadd`, forces `multipliers`, `wrenches`, and how well these were determined.
+    ///     Accelerations `qdd`, `thetadd`, forces `multipliers`, `wrenches`, and how well these were determined; arrays that lead with the
+    ///     batch if there is one.
     #[pyo3(signature = (q, qd, theta=None, thetad=None, tau=None, *, constraints, model=None, tau_ext=None, threshold=1e-9, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
     fn constrained_forward_dynamics<'py>(
         &self,
+        py: Python<'py>,
         q: &Bound<'py, PyAny>,
         qd: &Bound<'py, PyAny>,
         theta: Option<&Bound<'py, PyAny>>,
         thetad: Option<&Bound<'py, PyAny>>,
         tau: Option<&Bound<'py, PyAny>>,
-        constraints: Given<'py>,
+        constraints: Held<'py>,
         model: Option<&str>,
         tau_ext: Option<&Bound<'py, PyAny>>,
         threshold: f64,
         damping: f64,
     ) -> PyResult<PyConstrainedMotion> {
         let (held, regularisation) = (self.held(&constraints)?, regularisation(threshold, damping)?);
-        self.with(model, |w| {
+        let read = |w: &mut Workspace| {
             self.layout.state(w, q, qd, theta, thetad)?;
             let Some(tau) = tau else {
                 return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
             };
             self.layout.forces("tau", tau, &mut w.tau)?;
-            let Workspace { dynamics, q, qd, theta, thetad, tau, tau_ext: room, .. } = w;
-            let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
-            let (mut out, mut multipliers, mut wrenches) = self.room(&held);
-            let [qdd, thetadd, tau_j] = &mut out;
+            self.layout.load_or_none(tau_ext, &mut w.tau_ext)
+        };
+        let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
+            let [qdd, thetadd, tau_j, forces @ ..] = out else { return Ok(()) };
+            let mut wrenches = vec![Force::zero(); held.len()];
             let solved = dynamics.constrained_forward(
-                State { q, qd, theta, thetad },
-                tau,
-                ext,
+                state(&s),
+                s.tau,
+                load(&s),
                 &held,
                 regularisation,
                 Forward { qdd, thetadd, tau_j },
-                Constrained { multipliers: &mut multipliers, wrenches: &mut wrenches },
-            );
-            let forces = Forces { solved: solved.map_err(errors::raise)?, multipliers, wrenches };
-            Ok(PyConstrainedMotion { out, forces })
-        })
+                Constrained { multipliers: forces[0], wrenches: &mut wrenches },
+            )?;
+            result::write(&solved, &wrenches, forces);
+            Ok(())
+        };
+        let arguments = [
+            ("q", Some(q), Need::Always),
+            ("qd", Some(qd), Need::Always),
+            ("theta", theta, Need::Elastic),
+            ("thetad", thetad, Need::Elastic),
+            ("tau", tau, Need::Always),
+            ("tau_ext", tau_ext, Need::Never),
+        ];
+        let shapes = result::shapes(&["qdd", "thetadd", "tau_j"], self.layout.nv, &held);
+        Ok(PyConstrainedMotion(self.table(py, model, &arguments, &shapes, read, one)?))
     }
 
     /// Torques that a motion asks for with something held, and the forces that hold it: of all that make the motion those with the least
@@ -110,7 +126,7 @@ impl PyRobot {
     /// ----------
     /// q, qd, qdd
     ///     Joint positions, shape `(nq,)`, velocities and accelerations, shape `(nv,)` [rad or m, per s, per s²]. Only motions that keep the
-    ///     constraints can be made.
+    ///     constraints can be made. Arrays over joints or motors may be batches, `(batch, n)`; weights and `wanted` are the same for all.
     /// theta, thetad, thetadd
     ///     The same of the motors, seen from the link side, shape `(nv,)`. Needed if the model has elastic joints.
     /// constraints
@@ -139,13 +155,14 @@ impl PyRobot {
     #[expect(clippy::too_many_arguments, reason = "they are the quantities of the equation of motion")]
     fn constrained_inverse_dynamics<'py>(
         &self,
+        py: Python<'py>,
         q: &Bound<'py, PyAny>,
         qd: &Bound<'py, PyAny>,
         qdd: &Bound<'py, PyAny>,
         theta: Option<&Bound<'py, PyAny>>,
         thetad: Option<&Bound<'py, PyAny>>,
         thetadd: Option<&Bound<'py, PyAny>>,
-        constraints: Given<'py>,
+        constraints: Held<'py>,
         passive: Option<Vec<String>>,
         torque_weights: Option<&Bound<'py, PyAny>>,
         multiplier_weights: Option<&Bound<'py, PyAny>>,
@@ -157,27 +174,31 @@ impl PyRobot {
     ) -> PyResult<PyConstrainedTorques> {
         let (held, regularisation) = (self.held(&constraints)?, regularisation(threshold, damping)?);
         let sharing = Distribution::read(self, &held, passive, torque_weights, multiplier_weights, wanted)?;
-        self.with(model, |w| {
-            self.layout.state(w, q, qd, theta, thetad)?;
-            self.layout.velocities("qdd", qdd, &mut w.qdd)?;
-            self.layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)?;
-            let Workspace { dynamics, q, qd, theta, thetad, qdd, thetadd, tau_ext: room, .. } = w;
-            let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
-            let ([mut tau_j, mut tau, _], mut multipliers, mut wrenches) = self.room(&held);
+        let read = |w: &mut Workspace| {
+            self.motion_of(w, [q, qd, qdd], [theta, thetad, thetadd])?;
+            self.layout.load_or_none(tau_ext, &mut w.tau_ext)
+        };
+        let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
+            let [tau_j, tau, unborne, forces @ ..] = out else { return Ok(()) };
+            let mut wrenches = vec![Force::zero(); held.len()];
             let solved = dynamics.constrained_inverse(
-                State { q, qd, theta, thetad },
-                Acceleration { qdd, thetadd },
-                ext,
+                state(&s),
+                acceleration(&s),
+                load(&s),
                 &held,
                 sharing.view(),
                 regularisation,
-                Inverse { tau_j: &mut tau_j, tau: &mut tau },
-                Constrained { multipliers: &mut multipliers, wrenches: &mut wrenches },
-            );
-            let forces = Forces { solved: solved.map_err(errors::raise)?, multipliers, wrenches };
-            let unborne = sharing.passive().iter().fold(0.0, |most: f64, k| most.max(tau_j[*k].abs()));
-            Ok(PyConstrainedTorques { tau_j, tau, unborne, forces })
-        })
+                Inverse { tau_j, tau },
+                Constrained { multipliers: forces[0], wrenches: &mut wrenches },
+            )?;
+            unborne[0] = sharing.passive().iter().fold(0.0, |most: f64, k| most.max(tau_j[*k].abs()));
+            result::write(&solved, &wrenches, forces);
+            Ok(())
+        };
+        let arguments = motion_arguments([q, qd, qdd], [theta, thetad, thetadd], tau_ext);
+        let mut shapes = result::shapes(&["tau_j", "tau"], self.layout.nv, &held);
+        shapes.insert(2, ("unborne", vec![]));
+        Ok(PyConstrainedTorques(self.table(py, model, &arguments, &shapes, read, one)?))
     }
 
     /// Velocities after everything in `constraints` is caught at once, and the impulses of it. Positions stay.
@@ -187,7 +208,7 @@ impl PyRobot {
     /// Parameters
     /// ----------
     /// q, qd
-    ///     Joint positions, shape `(nq,)`, and velocities before, shape `(nv,)` [rad or m, per s].
+    ///     Joint positions, shape `(nq,)` or `(batch, nq)`, and velocities before, shape `(nv,)` or `(batch, nv)` [rad or m, per s].
     /// thetad
     ///     Motor velocities before, seen from the link side, shape `(nv,)`. Needed if the model has elastic joints.
     /// constraints
@@ -202,37 +223,42 @@ impl PyRobot {
     /// Returns
     /// -------
     /// Impact
-    ///     Velocities `qd`, `thetad`, impulses `multipliers`, `wrenches`, `gears`, and how well these were determined.
+    ///     Velocities `qd`, `thetad`, impulses `multipliers`, `wrenches`, `gears`, and how well these were determined; arrays that lead with
+    ///     the batch if there is one.
     #[pyo3(signature = (q, qd, thetad=None, *, constraints, release=false, model=None, threshold=1e-9, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "most of them may be left out")]
     fn impact<'py>(
         &self,
+        py: Python<'py>,
         q: &Bound<'py, PyAny>,
         qd: &Bound<'py, PyAny>,
         thetad: Option<&Bound<'py, PyAny>>,
-        constraints: Given<'py>,
+        constraints: Held<'py>,
         release: bool,
         model: Option<&str>,
         threshold: f64,
         damping: f64,
     ) -> PyResult<PyImpact> {
         let (held, regularisation) = (self.held(&constraints)?, regularisation(threshold, damping)?);
-        self.with(model, |w| {
-            self.motion(w, q, qd, thetad)?;
-            let Workspace { dynamics, q, qd, theta, thetad, .. } = w;
-            let (mut out, mut multipliers, mut wrenches) = self.room(&held);
-            let [after, motors, gears] = &mut out;
+        let read = |w: &mut Workspace| self.motion(w, q, qd, thetad);
+        let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
+            let [qd, thetad, gears, forces @ ..] = out else { return Ok(()) };
+            let mut wrenches = vec![Force::zero(); held.len()];
             let solved = dynamics.impact(
-                State { q, qd, theta, thetad },
+                state(&s),
                 &held,
                 release,
                 regularisation,
-                Impact { qd: after, thetad: motors, gears },
-                Constrained { multipliers: &mut multipliers, wrenches: &mut wrenches },
-            );
-            let forces = Forces { solved: solved.map_err(errors::raise)?, multipliers, wrenches };
-            Ok(PyImpact { out, forces })
-        })
+                Impact { qd, thetad, gears },
+                Constrained { multipliers: forces[0], wrenches: &mut wrenches },
+            )?;
+            result::write(&solved, &wrenches, forces);
+            Ok(())
+        };
+        let arguments =
+            [("q", Some(q), Need::Always), ("qd", Some(qd), Need::Always), ("thetad", thetad, Need::Elastic)];
+        let shapes = result::shapes(&["qd", "thetad", "gears"], self.layout.nv, &held);
+        Ok(PyImpact(self.table(py, model, &arguments, &shapes, read, one)?))
     }
 
     /// How far constraints are from being kept, and their Jacobian.
@@ -240,46 +266,45 @@ impl PyRobot {
     /// Parameters
     /// ----------
     /// q, qd
-    ///     Joint positions, shape `(nq,)`, and velocities, shape `(nv,)` [rad or m, per s].
+    ///     Joint positions, shape `(nq,)` or `(batch, nq)`, and velocities, shape `(nv,)` or `(batch, nv)` [rad or m, per s].
     /// constraints
     ///     What is held: `Constraint`s.
+    /// out
+    ///     A tuple of arrays that takes the results.
     ///
     /// Returns
     /// -------
     /// (error, velocity, jacobian)
     ///     With `m` directions: errors of position, of turns to first order, and of velocity, shape `(m,)` [m or rad, per s], and the Jacobian
-    ///     of the errors, shape `(m, nv)`, of a floating root by its twist.
-    #[pyo3(signature = (q, qd, *, constraints))]
+    ///     of the errors, shape `(m, nv)`, of a floating root by its twist; each leads with the batch if there is one.
+    #[pyo3(signature = (q, qd, *, constraints, out=None))]
     fn constraint_motion<'py>(
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
         qd: &Bound<'py, PyAny>,
-        constraints: Given<'py>,
-    ) -> PyResult<(Vector<'py>, Vector<'py>, Matrix<'py>)> {
+        constraints: Held<'py>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let held = self.held(&constraints)?;
-        let (m, nv) = (constraint_rows(&held), self.layout.nv);
-        let (mut error, mut velocity, mut jacobian) = (vec![0.0; m], vec![0.0; m], vec![0.0; m * nv]);
-        self.with(None, |w| {
+        let read = |w: &mut Workspace| {
             self.layout.positions(q, &mut w.q)?;
-            self.layout.velocities("qd", qd, &mut w.qd)?;
-            let out = ConstraintMotion { error: &mut error, velocity: &mut velocity, jacobian: &mut jacobian };
-            w.dynamics.constraint_motion(&w.q, &w.qd, &held, out).map_err(errors::raise)?;
-            let jacobian = shaped(py, "jacobian", &jacobian, [m, nv])?;
-            Ok((vector(py, "error", &error)?, vector(py, "velocity", &velocity)?, jacobian))
-        })
+            self.layout.velocities("qd", qd, &mut w.qd)
+        };
+        let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
+            let [error, velocity, jacobian] = out else { return Ok(()) };
+            dynamics.constraint_motion(s.q, s.qd, &held, ConstraintMotion { error, velocity, jacobian })
+        };
+        let (m, nv) = (constraint_rows(&held), self.layout.nv);
+        let shapes = [("error", vec![m]), ("velocity", vec![m]), ("jacobian", vec![m, nv])];
+        let arguments = [("q", Some(q), Need::Always), ("qd", Some(qd), Need::Always)];
+        self.by_rows(py, None, &arguments, &shapes, out, read, one)
     }
 }
 
 impl PyRobot {
-    fn held(&self, constraints: &Given<'_>) -> PyResult<Vec<Constraint<f64>>> {
+    fn held(&self, constraints: &Held<'_>) -> PyResult<Vec<Constraint<f64>>> {
         constraints.iter().map(|c| c.get().resolve(self)).collect()
-    }
-
-    /// Room for three results over the joints, for multipliers and for wrenches.
-    fn room(&self, held: &[Constraint<f64>]) -> ([Vec<f64>; 3], Vec<f64>, Vec<Force<f64>>) {
-        let out = std::array::from_fn(|_| vec![0.0; self.layout.nv]);
-        (out, vec![0.0; constraint_rows(held)], vec![Force::zero(); held.len()])
     }
 }
 

@@ -6,14 +6,17 @@ mod response;
 pub(crate) use model::{PyLinearization, PyMode};
 pub(crate) use response::PyFrequencyResponse;
 
+use crate::batch::{Row, rows};
 use crate::robot::PyRobot;
 use crate::{arguments, errors};
 use gyroflex_sim::Error;
 use gyroflex_sim::error::ErrorKind;
 use gyroflex_sim::linearize::{KeptFriction, Linearizer, OperatingPoint, Output, Sweep, frequency_response};
 use gyroflex_sim::simulate::StateVec;
+use pyo3::exceptions::{PyIndexError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
+use rayon::prelude::*;
 
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
@@ -31,7 +34,8 @@ impl PyRobot {
     ///     Joint positions, shape `(nq,)` [rad or m]; zero if left out. Without `qd` the robot is at rest: where its motors
     ///     hold it at `q`, or, if `tau` is given, at the pose at which `tau` holds it, looked for from `q` on.
     /// qd, theta, thetad, tau
-    ///     With `qd`, any state and motor torques, as in `forward_dynamics`.
+    ///     With `qd`, any state and motor torques, as in `forward_dynamics`. If any of the arrays is a batch, `(batch, n)`, there is a
+    ///     linear model for each row, computed on all cores.
     /// outputs
     ///     What `y` is made of: `motor_position`, `motor_velocity`, `link_position`, `link_velocity`, `joint_torque` (all
     ///     joints each), `pose:LINK` (position and rotation vector of a link's frame, world axes).
@@ -54,41 +58,25 @@ impl PyRobot {
         model: Option<&str>,
         friction: &str,
     ) -> PyResult<PyLinearization> {
-        let mut linearizer = self.linearizer(model, friction)?;
+        let linearizer = self.linearizer(model, friction)?;
         let outputs = read_outputs(outputs)?;
-        let q = self.start(&linearizer, q)?;
-        let point = match qd {
-            Some(qd) => Some(self.state(&linearizer, &q, qd, [theta, thetad, tau])?),
-            None => {
-                for (name, value) in [("theta", theta), ("thetad", thetad)] {
-                    if value.is_some() {
-                        return Err(errors::argument(
-                            name,
-                            "it is given, but `qd` is not",
-                            "give all of a moving state",
-                        ));
-                    }
-                }
-                None
+        let names = [("q", q), ("qd", qd), ("theta", theta), ("thetad", thetad), ("tau", tau)];
+        let rows = rows(&self.layout, names)?;
+        let batch = rows.is_some();
+        let about_points = match rows {
+            None => vec![self.about(&linearizer, [q, qd, theta, thetad, tau])?],
+            Some(rows) => {
+                let about = |row: &Row<'py, 5>| self.about(&linearizer, row.each_ref().map(|value| value.as_ref()));
+                rows.iter().map(about).collect::<PyResult<_>>()?
             }
-        };
-        let torques = match (&point, tau) {
-            (None, Some(tau)) => {
-                let mut torques = vec![0.0; self.layout.nv];
-                self.layout.forces("tau", tau, &mut torques)?;
-                Some(torques)
-            }
-            _ => None,
         };
         let linear = py.detach(|| {
-            let point = match (point, torques) {
-                (Some(point), _) => point,
-                (None, Some(tau)) => linearizer.equilibrium_for(&tau, &q)?,
-                (None, None) => linearizer.equilibrium_at(&q)?,
-            };
-            linearizer.linearize(&point, &outputs)
+            each(batch, about_points, &linearizer, |linearizer, about| {
+                let point = about.point(linearizer)?;
+                linearizer.linearize(&point, &outputs)
+            })
         });
-        linear.map(PyLinearization::new).map_err(about("outputs"))
+        linear.map(|linear| PyLinearization::new(linear, batch)).map_err(about("outputs"))
     }
 
     /// How the robot swings by itself about the equilibrium at a pose, from the slowest mode to the fastest.
@@ -120,7 +108,7 @@ impl PyRobot {
     /// joint
     ///     Name of the joint.
     /// q
-    ///     Joint positions, shape `(nq,)` [rad or m]; zero if left out.
+    ///     Joint positions, shape `(nq,)` [rad or m], or `(batch, nq)` for a response at each; zero if left out.
     /// start, stop
     ///     The first and the last frequency [Hz]; by default well below the slowest and well above the fastest mode.
     /// points
@@ -142,16 +130,60 @@ impl PyRobot {
         model: Option<&str>,
         friction: &str,
     ) -> PyResult<PyFrequencyResponse> {
-        let mut linearizer = self.linearizer(model, friction)?;
+        let linearizer = self.linearizer(model, friction)?;
         linearizer.layout().find(joint).map_err(about("joint"))?;
-        let q = self.start(&linearizer, q)?;
+        let rows = rows(&self.layout, [("q", q)])?;
+        let batch = rows.is_some();
+        let poses = match rows {
+            None => vec![self.start(&linearizer, q)?],
+            Some(rows) => rows.iter().map(|[q]| self.start(&linearizer, q.as_ref())).collect::<PyResult<Vec<_>>>()?,
+        };
         let sweep = Sweep { from: start, to: stop, points: Some(points) };
-        let response = py.detach(|| {
-            let point = linearizer.equilibrium_at(&q)?;
-            frequency_response(&linearizer, &point, joint, sweep)
+        let responses = py.detach(|| {
+            each(batch, poses, &linearizer, |linearizer, q| {
+                let point = linearizer.equilibrium_at(&q)?;
+                frequency_response(linearizer, &point, joint, sweep)
+            })
         });
-        response.map(PyFrequencyResponse::new).map_err(about("start, stop, points"))
+        responses.map(|all| PyFrequencyResponse::new(all, batch)).map_err(about("start, stop, points"))
     }
+}
+
+/// What a linear model is about.
+enum About {
+    /// Where the motors hold the robot at these positions.
+    Held(Vec<f64>),
+    /// Where these motor torques hold it, looked for from these positions on.
+    Under(Vec<f64>, Vec<f64>),
+    /// This state.
+    State(OperatingPoint),
+}
+
+impl About {
+    fn point(self, linearizer: &mut Linearizer) -> Result<OperatingPoint, Error> {
+        match self {
+            Self::Held(q) => linearizer.equilibrium_at(&q),
+            Self::Under(tau, q) => linearizer.equilibrium_for(&tau, &q),
+            Self::State(point) => Ok(point),
+        }
+    }
+}
+
+/// Runs a calculation for every row, on all cores; an error says of which row of a batch.
+fn each<T: Send, R: Send>(
+    batch: bool,
+    rows: Vec<T>,
+    linearizer: &Linearizer,
+    run: impl Fn(&mut Linearizer, T) -> Result<R, Error> + Sync,
+) -> Result<Vec<R>, Error> {
+    if !batch {
+        let mut linearizer = linearizer.clone();
+        return rows.into_iter().map(|row| run(&mut linearizer, row)).collect();
+    }
+    let run = |linearizer: &mut Linearizer, (k, row): (usize, T)| {
+        run(linearizer, row).map_err(|e| Error { problem: format!("row {k}: {}", e.problem), ..e })
+    };
+    rows.into_par_iter().enumerate().map_init(|| linearizer.clone(), run).collect()
 }
 
 impl PyRobot {
@@ -159,6 +191,21 @@ impl PyRobot {
         let fidelity = model.map_or(Ok(self.robot.fidelity), arguments::fidelity)?;
         let kept = arguments::choice("friction", friction, &KeptFriction::NAMES)?;
         Linearizer::new(&self.robot, fidelity, kept).map_err(errors::raise)
+    }
+
+    /// What the arguments `q, qd, theta, thetad, tau` say of one linear model.
+    fn about(&self, linearizer: &Linearizer, [q, qd, theta, thetad, tau]: [Argument<'_, '_>; 5]) -> PyResult<About> {
+        let q = self.start(linearizer, q)?;
+        if let Some(qd) = qd {
+            return Ok(About::State(self.state(linearizer, &q, qd, [theta, thetad, tau])?));
+        }
+        if let Some((name, _)) = [("theta", theta), ("thetad", thetad)].iter().find(|(_, value)| value.is_some()) {
+            return Err(errors::argument(name, "it is given, but `qd` is not", "give all of a moving state"));
+        }
+        let Some(tau) = tau else { return Ok(About::Held(q)) };
+        let mut torques = vec![0.0; self.layout.nv];
+        self.layout.forces("tau", tau, &mut torques)?;
+        Ok(About::Under(torques, q))
     }
 
     /// The positions given, or zero.
@@ -220,4 +267,20 @@ fn about(argument: &'static str) -> impl Fn(Error) -> PyErr {
         ErrorKind::Shape => errors::argument(argument, e.problem, e.remedy),
         _ => errors::raise(e),
     }
+}
+
+/// How many there are in a batch.
+fn length(batch: bool, count: usize, what: &str) -> PyResult<usize> {
+    if batch { Ok(count) } else { Err(PyTypeError::new_err(format!("a single {what} has no length"))) }
+}
+
+/// Which one of a batch an index means.
+fn entry(batch: bool, count: usize, what: &str, index: isize) -> PyResult<usize> {
+    if !batch {
+        return Err(PyTypeError::new_err(format!("a single {what} has no entries")));
+    }
+    let from_start = if index < 0 { index.checked_add_unsigned(count) } else { Some(index) };
+    from_start.and_then(|k| usize::try_from(k).ok()).filter(|k| *k < count).ok_or_else(|| {
+        PyIndexError::new_err(format!("there are {count} {what}s in this batch, and none has index {index}"))
+    })
 }

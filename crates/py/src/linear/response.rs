@@ -1,19 +1,52 @@
 //! A frequency response.
 
-use crate::arrays::{Complexes, Vector, complexes, vector};
+use super::{entry, length};
+use crate::batch::array;
+use crate::errors;
 use gyroflex_sim::linearize::{Extreme, Response};
-use numpy::Complex64;
+use numpy::{Complex64, Element};
 use pyo3::prelude::*;
 
 /// Response of a joint to its own motor; motor quantities are seen from the link side.
 ///
-/// Every array is a new one, and yours to change.
+/// Every array is a new one, and yours to change. Of a batch of poses it is the responses at all of them: arrays lead with the batch,
+/// `response[k]` is one of them, and `len(response)` says how many there are.
 #[pyclass(name = "FrequencyResponse", module = "gyroflex", frozen)]
-pub(crate) struct PyFrequencyResponse(Response);
+pub(crate) struct PyFrequencyResponse {
+    responses: Vec<Response>,
+    batch: bool,
+}
 
 impl PyFrequencyResponse {
-    pub(super) fn new(response: Response) -> Self {
-        Self(response)
+    pub(super) fn new(responses: Vec<Response>, batch: bool) -> Self {
+        Self { responses, batch }
+    }
+
+    /// A value for every frequency.
+    fn over_frequencies<'py, T: Element>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&Response) -> Vec<T>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let points = self.responses.first().map_or(0, |r| r.frequency.len());
+        let shape: Vec<usize> = self.batch.then_some(self.responses.len()).into_iter().chain([points]).collect();
+        array(py, self.responses.iter().flat_map(of).collect(), &shape)
+    }
+
+    /// Frequencies of peaks or dips, of which every pose has as many as it has.
+    fn frequencies<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        of: impl Fn(&Response) -> &Vec<Extreme>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let [one] = &self.responses[..] else {
+            let problem = format!("these are {} responses, not all with as many {name}", self.responses.len());
+            return Err(errors::argument("self", problem, format!("take `[one.{name} for one in response]`")));
+        };
+        let found: Vec<f64> = of(one).iter().map(|e| e.frequency).collect();
+        let n = found.len();
+        array(py, found, &[n])
     }
 }
 
@@ -22,46 +55,55 @@ impl PyFrequencyResponse {
     /// Name of the joint.
     #[getter]
     fn joint(&self) -> &str {
-        &self.0.joint
+        self.responses.first().map_or("", |r| &r.joint)
     }
 
-    /// Frequencies [Hz].
+    /// Frequencies [Hz], shape `([batch,] points)`.
     #[getter]
-    fn frequency<'py>(&self, py: Python<'py>) -> PyResult<Vector<'py>> {
-        vector(py, "frequency", &self.0.frequency)
+    fn frequency<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.over_frequencies(py, |r| r.frequency.clone())
     }
 
-    /// Motor position per motor torque at each frequency [rad/(N m), or m/N].
+    /// Motor position per motor torque at each frequency [rad/(N m), or m/N], shape `([batch,] points)`.
     #[getter]
-    fn motor<'py>(&self, py: Python<'py>) -> PyResult<Complexes<'py>> {
-        complexes(py, "motor", self.0.motor.iter().map(|z| Complex64::new(z.re, z.im)))
+    fn motor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.over_frequencies(py, |r| r.motor.iter().map(|z| Complex64::new(z.re, z.im)).collect())
     }
 
-    /// Link position per motor torque at each frequency [rad/(N m), or m/N].
+    /// Link position per motor torque at each frequency [rad/(N m), or m/N], shape `([batch,] points)`.
     #[getter]
-    fn link<'py>(&self, py: Python<'py>) -> PyResult<Complexes<'py>> {
-        complexes(py, "link", self.0.link.iter().map(|z| Complex64::new(z.re, z.im)))
+    fn link<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.over_frequencies(py, |r| r.link.iter().map(|z| Complex64::new(z.re, z.im)).collect())
     }
 
-    /// Frequencies of the peaks of the motor's response [Hz], found to more digits than those of `frequency`.
+    /// Frequencies of the peaks of the motor's response at one pose [Hz], found to more digits than those of `frequency`.
     #[getter]
-    fn resonances<'py>(&self, py: Python<'py>) -> PyResult<Vector<'py>> {
-        frequencies(py, "resonances", &self.0.resonances)
+    fn resonances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.frequencies(py, "resonances", |r| &r.resonances)
     }
 
-    /// Frequencies of the dips of the motor's response [Hz].
+    /// Frequencies of the dips of the motor's response at one pose [Hz].
     #[getter]
-    fn antiresonances<'py>(&self, py: Python<'py>) -> PyResult<Vector<'py>> {
-        frequencies(py, "antiresonances", &self.0.antiresonances)
+    fn antiresonances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.frequencies(py, "antiresonances", |r| &r.antiresonances)
+    }
+
+    fn __len__(&self) -> PyResult<usize> {
+        length(self.batch, self.responses.len(), "response")
+    }
+
+    fn __getitem__(&self, index: isize) -> PyResult<Self> {
+        let k = entry(self.batch, self.responses.len(), "response", index)?;
+        Ok(Self { responses: vec![self.responses[k].clone()], batch: false })
     }
 
     fn __repr__(&self) -> String {
-        let Response { joint, frequency, .. } = &self.0;
+        let [one] = &self.responses[..] else {
+            return format!("<FrequencyResponse: {}, batch of {}>", self.joint(), self.responses.len());
+        };
+        let frequency = &one.frequency;
         let ends = (frequency.first().unwrap_or(&0.0), frequency.last().unwrap_or(&0.0));
-        format!("<FrequencyResponse: {joint}, {} frequencies from {:.4} to {:.4} Hz>", frequency.len(), ends.0, ends.1)
+        let n = frequency.len();
+        format!("<FrequencyResponse: {}, {n} frequencies from {:.4} to {:.4} Hz>", one.joint, ends.0, ends.1)
     }
-}
-
-fn frequencies<'py>(py: Python<'py>, name: &str, of: &[Extreme]) -> PyResult<Vector<'py>> {
-    vector(py, name, &of.iter().map(|e| e.frequency).collect::<Vec<_>>())
 }

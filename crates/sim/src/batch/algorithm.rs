@@ -1,6 +1,7 @@
 //! The algorithms that run over many states.
 
 use super::work::Work;
+use crate::link_frame::LinkFrame;
 use gyroflex::Scalar;
 use gyroflex::dynamics::{
     self, Acceleration, Axes, Bias, CoriolisMatrices, External, Forward, Frame, InertiaRates, Inverse, State,
@@ -9,7 +10,7 @@ use gyroflex::model::{Model, SizeError};
 use gyroflex::spatial::Transform;
 
 /// What is computed of every state.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Algorithm {
     /// `qdd`, `thetadd`, `tau_j`.
     ForwardDynamics,
@@ -29,15 +30,15 @@ pub enum Algorithm {
     GravityTorques,
     /// Kinetic energy, that of gravity, and that of the springs [J].
     Energy,
-    /// Pose of a frame in the world, `4 × 4` by rows; of a frame of the world if its body is `None`.
-    Placement(Option<usize>, Transform<f64>),
-    /// Jacobian of a frame, `6 × nv` by rows, angular rows first.
-    Jacobian(Frame<f64>, Axes),
+    /// Pose of a link's frame in the world, `4 × 4` by rows.
+    Placement(LinkFrame),
+    /// Jacobian of a link's frame, `6 × nv` by rows, angular rows first.
+    Jacobian(LinkFrame, Axes),
 }
 
 impl Algorithm {
     /// Numbers that each result has of a state, for a robot of `nv` velocities.
-    pub fn columns(self, nv: usize) -> Vec<usize> {
+    pub fn columns(&self, nv: usize) -> Vec<usize> {
         match self {
             Self::ForwardDynamics => vec![nv; 3],
             Self::InverseDynamics | Self::Bias => vec![nv; 2],
@@ -51,7 +52,8 @@ impl Algorithm {
         }
     }
 
-    pub(super) fn run<T: Scalar>(self, model: &Model<T::Param>, work: &mut Work<T>) -> Result<(), SizeError> {
+    /// Runs it on states side by side, of a robot whose links do not bend.
+    pub(super) fn run<T: Scalar>(&self, model: &Model<T::Param>, work: &mut Work<T>) -> Result<(), SizeError> {
         let columns = self.columns(model.nv());
         let room = |i: usize| columns.get(i).copied().unwrap_or(0);
         let Work { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext, out: [a, b, c], scratch } = work;
@@ -83,24 +85,33 @@ impl Algorithm {
                 (a[0], b[0], c[0]) = (energy.kinetic, energy.gravity, energy.elastic);
                 Ok(())
             }
-            Self::Placement(body, placement) => {
+            Self::Placement(frame) => {
                 dynamics::placements(model, q, &mut scratch.poses)?;
-                let placement = placement.map(T::from_f64);
-                let pose = body.map_or(placement, |body| placement.after(scratch.poses[body]));
-                let (rotation, p) = (pose.rotation(), pose.pos.to_array());
-                let rows = rotation.rows.into_iter().zip(p).flat_map(|(row, p)| {
-                    let [x, y, z] = row.to_array();
-                    [x, y, z, p]
-                });
-                let last = [T::zero(), T::zero(), T::zero(), T::one()];
-                a.iter_mut().zip(rows.chain(last)).for_each(|(to, from)| *to = from);
+                let placement = frame.placement.map(T::from_f64);
+                let pose = frame.body.map_or(placement, |body| placement.after(scratch.poses[body]));
+                write_pose(pose, a);
                 Ok(())
             }
-            Self::Jacobian(Frame { body, placement }, axes) => {
+            Self::Jacobian(frame, axes) => {
+                let Some(body) = frame.body else {
+                    a.fill(T::zero());
+                    return Ok(());
+                };
                 dynamics::placements(model, q, &mut scratch.poses)?;
-                let frame = Frame { body, placement: placement.map(T::from_f64) };
-                dynamics::jacobian(model, &scratch.poses, frame, axes, a)
+                let frame = Frame { body, placement: frame.placement.map(T::from_f64) };
+                dynamics::jacobian(model, &scratch.poses, frame, *axes, a)
             }
         }
     }
+}
+
+/// A pose as `4 × 4` numbers by rows.
+pub(super) fn write_pose<T: Scalar>(pose: Transform<T>, out: &mut [T]) {
+    let (rotation, p) = (pose.rotation(), pose.pos.to_array());
+    let rows = rotation.rows.into_iter().zip(p).flat_map(|(row, p)| {
+        let [x, y, z] = row.to_array();
+        [x, y, z, p]
+    });
+    let last = [T::zero(), T::zero(), T::zero(), T::one()];
+    out.iter_mut().zip(rows.chain(last)).for_each(|(to, from)| *to = from);
 }

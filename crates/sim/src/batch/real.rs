@@ -3,7 +3,7 @@
 use gyroflex::{Lanes, Scalar};
 
 /// `f32` or `f64`.
-pub trait Real: Scalar<Param = Self> + Send + Sync + 'static {
+pub trait Real: Scalar<Param = Self> + Into<f64> + Send + Sync + 'static {
     /// Several states side by side.
     type Lanes: Scalar<Param = Self> + Send;
     /// How many: they fill a register of AVX-512, or two of AVX2.

@@ -1,5 +1,6 @@
 //! Motions of many copies of a robot, each from its own state and under its own torques.
 
+use super::bending::{One, take};
 use super::rows::{fits, gather, gather_step};
 use super::work::Work;
 use super::{Real, in_parallel};
@@ -55,14 +56,12 @@ pub struct Trajectories<'a, F> {
     pub thetad: &'a mut [F],
 }
 
-/// Simulates so many motions. One that diverges is not finite from there on, and leaves the others alone.
+/// Simulates so many motions. One that diverges is not finite from there on, and leaves the others alone. A robot whose links bend is
+/// computed one motion after the other, in `f64`.
 ///
 /// # Errors
-/// An array that does not fit, or a robot with links that bend.
+/// An array that does not fit.
 pub fn rollout<F: Real>(model: &OwnedModel, rows: usize, given: Rollout<F>, out: Trajectories<F>) -> Result<(), Error> {
-    model.refuse_bending("a rollout")?;
-    let records = model.cast::<F>();
-    let model = &records.view();
     let (nq, nv, times) = (model.nq(), model.nv(), given.steps + 1);
     let over_joints = [("qd", given.qd), ("theta", given.theta), ("thetad", given.thetad)];
     fits("q", given.q, nq, rows)?;
@@ -75,13 +74,19 @@ pub fn rollout<F: Real>(model: &OwnedModel, rows: usize, given: Rollout<F>, out:
         .into_iter()
         .try_for_each(|(name, all)| chunk(name, all, nv))?;
 
-    let length = |columns: usize| (F::LANES * times * columns).max(1);
+    let bends = model.flexible().is_some();
+    let length = |columns: usize| (if bends { 1 } else { F::LANES } * times * columns).max(1);
     let tasks: Vec<[&mut [F]; 4]> = q
         .chunks_mut(length(nq))
         .zip(qd.chunks_mut(length(nv)))
         .zip(theta.chunks_mut(length(nv)).zip(thetad.chunks_mut(length(nv))))
         .map(|((q, qd), (theta, thetad))| [q, qd, theta, thetad])
         .collect();
+    if bends {
+        return in_parallel(tasks, || One::new(model), |one, (row, out)| bending_motion(&given, row, one, out));
+    }
+    let records = model.cast::<F>();
+    let model = &records.view();
     let storage = || {
         let stages = integrate::rk4_len(model).max(integrate::euler_len(model));
         (Work::new(model), vec![F::Lanes::zero(); stages])
@@ -124,6 +129,34 @@ fn motion<F: Real>(
             }
         }
         record(&mut out, work, k + 1, times);
+    }
+    Ok(())
+}
+
+/// The motion of one robot whose links bend.
+fn bending_motion<F: Real>(given: &Rollout<F>, row: usize, one: &mut One, mut out: [&mut [F]; 4]) -> Result<(), Error> {
+    let One { dynamics, q, qd, theta, thetad, tau, .. } = one;
+    take(given.q, row, q);
+    take(given.qd, row, qd);
+    take(given.theta, row, theta);
+    take(given.thetad, row, thetad);
+    let batched = given.tau.len() > given.tau_steps * tau.len();
+    for k in 0..=given.steps {
+        for (out, now) in out.iter_mut().zip([&*q, &*qd, &*theta, &*thetad]) {
+            let n = now.len();
+            out[k * n..][..n].iter_mut().zip(now).for_each(|(out, x)| *out = F::from_f64(*x));
+        }
+        if k < given.tau_steps {
+            let step = k + if batched { row * given.tau_steps } else { 0 };
+            take(&given.tau[step * tau.len()..][..tau.len()], 0, tau);
+        }
+        if k < given.steps {
+            let (state, none, step) = (StateMut { q, qd, theta, thetad }, External::none(), given.step.into());
+            match given.scheme {
+                Scheme::SemiImplicitEuler => dynamics.semi_implicit_euler(state, tau, none, step)?,
+                Scheme::Rk4 => dynamics.rk4(state, tau, none, step)?,
+            }
+        }
     }
     Ok(())
 }

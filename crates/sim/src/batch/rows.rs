@@ -3,17 +3,11 @@
 use super::work::Work;
 use super::{Given, Real};
 use crate::error::Error;
-use gyroflex::model::{Model, SizeError};
-
-/// Number of rows of an array of so many columns.
-pub(super) fn count(argument: &'static str, all: &[f64], columns: usize) -> Result<usize, Error> {
-    let rows = all.len().checked_div(columns).unwrap_or(0);
-    SizeError::check(argument, all.len(), rows * columns)?;
-    Ok(rows)
-}
+use crate::robot::OwnedModel;
+use gyroflex::model::SizeError;
 
 /// Whether all that is given has so many rows, or one.
-pub(super) fn check<F: Real>(model: &Model<F>, rows: usize, given: &Given<F>) -> Result<(), Error> {
+pub(super) fn check<F: Real>(model: &OwnedModel, rows: usize, given: &Given<F>) -> Result<(), Error> {
     let (nq, nv) = (model.nq(), model.nv());
     let Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext } = *given;
     let over_joints = [

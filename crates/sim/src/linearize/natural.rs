@@ -83,6 +83,24 @@ pub fn natural_modes(linear: &Linearization) -> Result<Vec<NaturalMode>, Error> 
     Ok(modes)
 }
 
+impl Linearization {
+    /// The eigenvalues of `A`, as many as states, by size; of a pair the one above the real axis comes last.
+    ///
+    /// # Errors
+    /// If they are not found.
+    pub fn eigenvalues(&self) -> Result<Vec<Complex<f64>>, Error> {
+        let mut found = eigenvalues(&self.a)?;
+        // Both of a pair have the same size but for rounding.
+        found.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+        for pair in 1..found.len() {
+            if found[pair] == found[pair - 1].conj() && found[pair].im < 0.0 {
+                found.swap(pair - 1, pair);
+            }
+        }
+        Ok(found)
+    }
+}
+
 /// All eigenvalues of a matrix.
 pub(crate) fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, Error> {
     let n = a.nrows();

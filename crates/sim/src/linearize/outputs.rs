@@ -1,13 +1,11 @@
 //! What a linear model shows of its state.
 
 use super::{Linearizer, OperatingPoint, Partials};
-use crate::bending::CrossSection;
 use crate::error::{Error, ErrorKind};
+use crate::link_frame::LinkFrame;
 use crate::load::nearest::nearest;
-use crate::robot::Link;
-use gyroflex::dynamics::{Axes, Frame, jacobian};
+use gyroflex::dynamics::Axes;
 use gyroflex::model::{Elastic, Knot, TransmissionError};
-use gyroflex::spatial::{Motion, Transform};
 use nalgebra::DMatrix;
 
 /// A kind of output: one entry per joint, or six for a pose.
@@ -166,7 +164,7 @@ pub(super) fn curvature(error: &TransmissionError<f64>, e: f64, ratio: f64) -> f
 /// Small motions of a link's frame: its Jacobian in world axes.
 fn pose(of: &Linearizer, point: &OperatingPoint, link: &str, first: usize, rows: &mut Rows) -> Result<(), Error> {
     let links = &of.robot.links;
-    let Some(found) = links.iter().find(|l| l.name == link) else {
+    let Some(index) = links.iter().position(|l| l.name == link) else {
         let remedy = match nearest(link, links.iter().map(|l| l.name.as_str())) {
             Some(near) => format!("the nearest known one is `{near}`"),
             None => "the robot has no links".to_owned(),
@@ -174,49 +172,13 @@ fn pose(of: &Linearizer, point: &OperatingPoint, link: &str, first: usize, rows:
         return Err(fault(format!("the robot has no link `{link}`"), remedy));
     };
     rows.names.extend(POSE.iter().map(|entry| format!("pose.{link}.{entry}")));
-    // A link of the world does not move.
-    let Some(body) = found.body else { return Ok(()) };
-    if of.layout.modes() > 0 {
-        return bending_pose(of, point, (found, body), first, rows);
-    }
-    let (model, nv) = (of.dynamics.model(), of.layout.nv());
-    let mut poses = vec![Transform::identity(); model.bodies().len()];
-    of.dynamics.placements(&point.state.q, &mut poses)?;
+    let nv = of.layout.nv();
     let mut j = vec![0.0; 6 * nv];
-    jacobian(&model, &poses, Frame { body, placement: found.placement }, Axes::World, &mut j)?;
+    LinkFrame::new(&of.robot, index).jacobian(&of.dynamics, &point.state.q, Axes::World, &mut j)?;
     for row in 0..6 {
         // The Jacobian has the angular part first, the pose the position.
         let from = (row + 3) % 6;
         (0..nv).for_each(|column| rows.c[(first + row, column)] = j[from * nv + column]);
-    }
-    Ok(())
-}
-
-/// The same where links bend: what every coordinate does to the frame, one after the other.
-fn bending_pose(
-    of: &Linearizer,
-    point: &OperatingPoint,
-    (link, body): (&Link, usize),
-    first: usize,
-    rows: &mut Rows,
-) -> Result<(), Error> {
-    let (dynamics, q, nv) = (&of.dynamics, &point.state.q, of.layout.nv());
-    let bodies = dynamics.model().bodies().len();
-    let (mut poses, mut twists) = (vec![Transform::identity(); bodies], vec![Motion::zero(); bodies]);
-    dynamics.placements(q, &mut poses)?;
-    let eta = dynamics.eta(q);
-    let index = of.robot.links.iter().position(|l| l.name == link.name).unwrap_or_default();
-    let section = CrossSection::of_link(&of.robot, index);
-    let carried = section.as_ref().map_or_else(Transform::identity, |s| s.pose(eta));
-    let to_world = link.placement.after(carried.after(poses[body])).rotation();
-    for k in 0..nv {
-        let mut unit = vec![0.0; nv];
-        unit[k] = 1.0;
-        dynamics.velocities(q, &unit, &mut twists)?;
-        let own = section.as_ref().map_or_else(Motion::zero, |s| s.velocity(eta, &unit[nv - eta.len()..]));
-        let v = link.placement.motion(carried.motion(twists[body]) + own);
-        let entries = (to_world * v.lin).to_array().into_iter().chain((to_world * v.ang).to_array());
-        entries.enumerate().for_each(|(row, x)| rows.c[(first + row, k)] = x);
     }
     Ok(())
 }

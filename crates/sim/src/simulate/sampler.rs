@@ -5,6 +5,7 @@ use crate::contact::Contacts;
 use crate::coordinates::Coordinates;
 use crate::dynamics::Dynamics;
 use crate::error::Error;
+use crate::link_frame::LinkFrame;
 use crate::loads::Loads;
 use crate::record::Sample;
 use crate::reference::Point;
@@ -16,7 +17,7 @@ use gyroflex::spatial::{Force, Motion, Transform, Vec3};
 #[derive(Clone, Debug)]
 pub(crate) struct Sampler {
     joints: Coordinates,
-    links: Vec<LinkFrame>,
+    links: Vec<Seen>,
     rotors: Vec<Rotor>,
     /// Tips of the links that bend.
     tips: Vec<CrossSection>,
@@ -36,14 +37,11 @@ pub(crate) struct Sampler {
     pub(crate) sample: Sample,
 }
 
-/// A link's place on its body, and its parent among the links.
+/// A link's frame, and its parent among the links.
 #[derive(Clone, Debug)]
-struct LinkFrame {
-    body: Option<usize>,
-    placement: Transform<f64>,
+struct Seen {
+    frame: LinkFrame,
     parent: Option<usize>,
-    /// What carries it on a link that bends.
-    section: Option<CrossSection>,
 }
 
 /// A rotor whose carrier is a moving body.
@@ -86,12 +84,11 @@ impl Sampler {
             Some(Dynamics::new(robot.model(fidelity)?))
         };
         let parent = |name: &String| robot.links.iter().position(|l| l.name == *name);
-        let links = robot.links.iter().enumerate().map(|(i, link)| LinkFrame {
-            body: link.body,
-            placement: link.placement,
-            parent: link.parent.as_ref().and_then(parent),
-            section: CrossSection::of_link(robot, i),
-        });
+        let links = robot
+            .links
+            .iter()
+            .enumerate()
+            .map(|(i, link)| Seen { frame: LinkFrame::new(robot, i), parent: link.parent.as_ref().and_then(parent) });
         let tips = CrossSection::tips(&robot.flexible);
         let zeros = vec![0.0; n];
         let sample = Sample {
@@ -253,11 +250,7 @@ impl Sampler {
         dynamics.placements(q, &mut self.poses)?;
         let eta = dynamics.eta(q);
         for (i, link) in self.links.iter().enumerate() {
-            let from_world = |l: &LinkFrame| match (l.body, &l.section) {
-                (Some(b), Some(section)) => l.placement.after(section.pose(eta).after(self.poses[b])),
-                (Some(b), None) => l.placement.after(self.poses[b]),
-                (None, _) => l.placement,
-            };
+            let from_world = |seen: &Seen| seen.frame.pose(&self.poses, eta);
             let own = from_world(link);
             self.sample.frames[i] = match link.parent {
                 Some(parent) => own.after(from_world(&self.links[parent]).inverse()),

@@ -14,15 +14,15 @@ pub(super) const fn rounded(coefficients: usize) -> Option<usize> {
     }
 }
 
-/// Runs a kernel for as many coefficients as are needed, or for the next larger number. Numbers beyond `MAX` are not compiled, and the
-/// largest, which hardly any robot needs, not for every instruction set.
+/// Runs a kernel for as many coefficients as are needed, or for the next larger number. Numbers beyond `MAX` are not compiled, for the
+/// compiler sees through a condition that is a constant, and the largest, which hardly any robot needs, not for every instruction set.
 macro_rules! with_size {
     ($needed:expr, $max:ident, $n:ident => $kernel:expr) => {
         $crate::dynamics::elastic_inverse::sizes::with_size!(@ $needed, $max, $n => $kernel, 1 2 3 4 5 6 7 9)
     };
     (@ $needed:expr, $max:ident, $n:ident => $kernel:expr, $($size:literal)*) => {
         match $needed {
-            $(needed if needed <= $size || $max <= $size => {
+            $(needed if const { $max <= $size } || needed <= $size => {
                 const $n: usize = $size;
                 T::dispatch($kernel)
             })*
