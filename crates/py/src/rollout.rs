@@ -2,7 +2,7 @@
 
 use crate::arguments::choice;
 use crate::arrays::{numbers, text_of};
-use crate::batch::{self, Float, Need, Numbers, all_given, all_single, columns};
+use crate::batch::{self, Finite, Float, Need, Numbers, all_given, all_single, columns};
 use crate::errors;
 use crate::robot::PyRobot;
 use gyroflex_sim::batch::{Rollout, Scheme, Trajectories, rollout};
@@ -125,7 +125,7 @@ impl PyRobot {
         let rows = batch_of(arrays)?;
         let given: Vec<(&str, Numbers<'py, F>)> = arrays
             .iter()
-            .map(|(name, array)| Ok((*name, columns(&self.layout, name, array)?)))
+            .map(|(name, array)| Ok((*name, columns(&self.layout, name, array, Finite::Now)?)))
             .collect::<PyResult<_>>()?;
         let (nq, nv, n) = (self.layout.nq, self.layout.nv, rows.unwrap_or(1));
         let still = vec![F::from_f64(0.0); nv];

@@ -68,7 +68,7 @@ pub(crate) fn rows<'py, const N: usize>(
         }
     }
     let Some(rows) = common_rows(&arrays, 2)? else { return Ok(None) };
-    arrays.iter().try_for_each(|(name, array)| columns::<f64>(layout, name, array).map(drop))?;
+    arrays.iter().try_for_each(|(name, array)| columns::<f64>(layout, name, array, Finite::Now).map(drop))?;
     let of = |name: &str, k: usize| {
         let Some((_, array)) = arrays.iter().find(|(known, _)| *known == name) else { return Ok(None) };
         if array.ndim() == 2 { array.get_item(k).map(Some) } else { Ok(Some(array.clone().into_any())) }
@@ -120,12 +120,21 @@ impl<F: Element> Numbers<'_, F> {
     }
 }
 
+/// Who looks for entries that are not finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Finite {
+    Now,
+    /// The algorithm that takes the numbers, on all cores.
+    ByAlgorithm,
+}
+
 /// Reads an array whose last axis runs over the joints; `name` says whether over positions, and whether a root may be left out. Modes of links that
 /// bend always may.
 pub(crate) fn columns<'py, F: Float>(
     layout: &Layout,
     name: &str,
     array: &Bound<'py, PyUntypedArray>,
+    finite: Finite,
 ) -> PyResult<Numbers<'py, F>> {
     let py = array.py();
     let shape = array.shape();
@@ -141,12 +150,14 @@ pub(crate) fn columns<'py, F: Float>(
     let tidy = py.import("numpy")?.call_method1("ascontiguousarray", (array, numpy::dtype::<F>(py)))?;
     let array = tidy.cast_into::<PyArrayDyn<F>>()?.try_readonly()?;
     let all = array.as_slice().unwrap_or_default();
-    if let Some(i) = all.iter().position(|x| !x.is_finite()) {
+    let quaternions = positions && layout.floating;
+    let copied = lead + trail > 0 || quaternions;
+    let look = copied || finite == Finite::Now;
+    if let Some(i) = all.iter().position(|x| look && !x.is_finite()) {
         let index = if shape.len() > 1 { format!("[{}, {}]", i / given, i % given) } else { i.to_string() };
         return Err(errors::not_finite(name, index, all[i].into()));
     }
-    let quaternions = positions && layout.floating;
-    if lead + trail == 0 && !quaternions {
+    if !copied {
         return Ok(Numbers::Array(array));
     }
     let zeros = vec![F::from_f64(0.0); lead.max(trail)];

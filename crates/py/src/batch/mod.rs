@@ -4,7 +4,7 @@ mod given;
 mod out;
 mod table;
 
-pub(crate) use given::{Argument, Float, Need, Numbers, Row, all_given, all_single, columns, rows};
+pub(crate) use given::{Argument, Finite, Float, Need, Numbers, Row, all_given, all_single, columns, rows};
 pub(crate) use out::{Shape, results, together, write};
 pub(crate) use table::{Table, array};
 
@@ -20,20 +20,19 @@ use rayon::prelude::*;
 
 /// The results of an algorithm that Python sees, the first ones of what it computes.
 fn shapes(algorithm: &Algorithm, nv: usize) -> Vec<Shape> {
-    let each = |names: &[&'static str], shape: &[usize]| names.iter().map(|name| (*name, shape.to_vec())).collect();
-    match algorithm {
-        Algorithm::ForwardDynamics => each(&["qdd", "thetadd"], &[nv]),
-        Algorithm::InverseDynamics => each(&["tau_j", "tau"], &[nv]),
-        Algorithm::MassMatrix => each(&["mass matrix"], &[nv, nv]),
-        Algorithm::CouplingMatrix => each(&["coupling matrix"], &[nv, nv]),
-        Algorithm::CoriolisMatrices => each(&["C", "C1", "C2"], &[nv, nv]),
-        Algorithm::InertiaRates => each(&["dM", "dS"], &[nv, nv]),
-        Algorithm::Bias => each(&["link", "motor"], &[nv]),
-        Algorithm::GravityTorques => each(&["gravity torques"], &[nv]),
-        Algorithm::Energy => each(&["kinetic", "gravity", "elastic"], &[]),
-        Algorithm::Placement(..) => each(&["placement"], &[4, 4]),
-        Algorithm::Jacobian(..) => each(&["jacobian"], &[6, nv]),
-    }
+    let shape = match algorithm {
+        Algorithm::ForwardDynamics | Algorithm::InverseDynamics | Algorithm::Bias | Algorithm::GravityTorques => {
+            vec![nv]
+        }
+        Algorithm::MassMatrix | Algorithm::CouplingMatrix => vec![nv, nv],
+        Algorithm::CoriolisMatrices | Algorithm::InertiaRates => vec![nv, nv],
+        Algorithm::Energy => vec![],
+        Algorithm::Placement(..) => vec![4, 4],
+        Algorithm::Jacobian(..) => vec![6, nv],
+    };
+    // Python does not see the transmissions' torques of forward dynamics.
+    let seen = if matches!(algorithm, Algorithm::ForwardDynamics) { 2 } else { 3 };
+    algorithm.names().iter().take(seen).map(|name| (*name, shape.clone())).collect()
 }
 
 impl PyRobot {
@@ -70,7 +69,7 @@ impl PyRobot {
         let given: Vec<(&str, Numbers<'py, F>)> = batch
             .arrays
             .iter()
-            .map(|(name, array)| Ok((*name, columns(&self.layout, name, array)?)))
+            .map(|(name, array)| Ok((*name, columns(&self.layout, name, array, Finite::ByAlgorithm)?)))
             .collect::<PyResult<_>>()?;
         let of = |name: &str| given.iter().find(|(n, _)| *n == name).map_or(&[][..], |(_, numbers)| numbers.slice());
         let states = Given {
@@ -93,8 +92,18 @@ impl PyRobot {
             all_given(arguments, w.elastic)?;
             write(&results, |slices| {
                 let model = w.dynamics.owned_model();
-                py.detach(|| batch::evaluate(model, algorithm, rows, states, slices)).map_err(errors::raise)?;
-                all_finite(&shapes, slices, batch.rows)
+                let Err(e) = py.detach(|| batch::evaluate(model, algorithm, rows, states, slices)) else {
+                    return Ok(());
+                };
+                // What is wrong in words of Python, if it is a number.
+                let given = batch.arrays.iter();
+                given
+                    .map(|(name, array)| columns::<F>(&self.layout, name, array, Finite::Now))
+                    .try_for_each(|c| c.map(drop))?;
+                if batch.rows.is_none() {
+                    all_finite(&shapes, slices, None)?;
+                }
+                Err(errors::raise(e))
             })
         })?;
         together(py, results.into_iter().map(Bound::into_any).collect())
@@ -162,7 +171,7 @@ impl PyRobot {
         let given: Vec<(&str, Numbers<'py, f64>)> = batch
             .arrays
             .iter()
-            .map(|(name, array)| Ok((*name, columns(&self.layout, name, array)?)))
+            .map(|(name, array)| Ok((*name, columns(&self.layout, name, array, Finite::Now)?)))
             .collect::<PyResult<_>>()?;
         let arrays: Vec<(&str, &[f64])> = given.iter().map(|(name, numbers)| (*name, numbers.slice())).collect();
         let zeros = vec![0.0; self.layout.nv];

@@ -53,10 +53,10 @@ pub(crate) fn results<'py, F: Float>(
     out: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Vec<Bound<'py, PyArrayDyn<F>>>> {
     let Some(out) = out else {
-        // NumPy's own way to make arrays says so where there is no memory.
-        let zeros = py.import("numpy")?.getattr("zeros")?;
+        // NumPy's own way to make arrays says so where there is no memory. Every entry is written, or the call fails.
+        let empty = py.import("numpy")?.getattr("empty")?;
         let made =
-            |shape: &Shape| Ok(zeros.call1((PyTuple::new(py, &shape.1)?, numpy::dtype::<F>(py)))?.cast_into()?);
+            |shape: &Shape| Ok(empty.call1((PyTuple::new(py, &shape.1)?, numpy::dtype::<F>(py)))?.cast_into()?);
         return shapes.iter().map(made).collect();
     };
     let outs = items(out, shapes.len())?;

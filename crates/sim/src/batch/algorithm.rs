@@ -52,6 +52,23 @@ impl Algorithm {
         }
     }
 
+    /// What its results are called.
+    pub fn names(&self) -> &'static [&'static str] {
+        match self {
+            Self::ForwardDynamics => &["qdd", "thetadd", "tau_j"],
+            Self::InverseDynamics => &["tau_j", "tau"],
+            Self::MassMatrix => &["mass matrix"],
+            Self::CouplingMatrix => &["coupling matrix"],
+            Self::CoriolisMatrices => &["C", "C1", "C2"],
+            Self::InertiaRates => &["dM", "dS"],
+            Self::Bias => &["link", "motor"],
+            Self::GravityTorques => &["gravity torques"],
+            Self::Energy => &["kinetic", "gravity", "elastic"],
+            Self::Placement(..) => &["placement"],
+            Self::Jacobian(..) => &["jacobian"],
+        }
+    }
+
     /// Runs it on states side by side, of a robot whose links do not bend.
     pub(super) fn run<T: Scalar>(&self, model: &Model<T::Param>, work: &mut Work<T>) -> Result<(), SizeError> {
         let columns = self.columns(model.nv());

@@ -13,7 +13,7 @@ pub use algorithm::Algorithm;
 pub use real::Real;
 pub use rollout::{Rollout, Scheme, Trajectories, rollout};
 
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
 use gyroflex::model::SizeError;
 use rayon::prelude::*;
@@ -50,7 +50,7 @@ pub struct Given<'a, F> {
 /// [`Algorithm::columns`] says. A robot whose links bend is computed row by row, in `f64`.
 ///
 /// # Errors
-/// An array that has neither one row nor as many as asked for.
+/// An array that has neither one row nor as many as asked for, or an entry that is not finite; [`ErrorKind::Diverged`] if a result is not.
 pub fn evaluate<F: Real>(
     model: &OwnedModel,
     algorithm: &Algorithm,
@@ -59,7 +59,7 @@ pub fn evaluate<F: Real>(
     out: &mut [&mut [F]],
 ) -> Result<(), Error> {
     rows::check(model, rows, &given)?;
-    let columns = algorithm.columns(model.nv());
+    let (columns, sizes) = (algorithm.columns(model.nv()), [model.nq(), model.nv()]);
     let bends = model.flexible().is_some();
     let task = GROUPS * if bends { 1 } else { F::LANES };
     let mut tasks: Vec<Vec<&mut [F]>> = (0..rows.div_ceil(task)).map(|_| Vec::new()).collect();
@@ -74,8 +74,13 @@ pub fn evaluate<F: Real>(
         let one = |one: &mut bending::One, (index, mut out): (usize, Vec<&mut [F]>)| {
             rows_of(index).enumerate().try_for_each(|(k, row)| {
                 one.load(given, row);
+                rows::refuse_not_finite(&given, sizes, row..row + 1)?;
                 one.run(algorithm)?;
-                out.iter_mut().zip(&columns).enumerate().for_each(|(i, (to, n))| one.write(i, &mut to[k * n..][..*n]));
+                for (i, (to, n)) in out.iter_mut().zip(&columns).enumerate() {
+                    let to = &mut to[k * n..][..*n];
+                    one.write(i, to);
+                    all_finite(to).then_some(()).ok_or_else(|| diverged(algorithm.names()[i], row))?;
+                }
                 Ok(())
             })
         };
@@ -86,14 +91,41 @@ pub fn evaluate<F: Real>(
     let run = |work: &mut Work<F::Lanes>, (index, mut out): (usize, Vec<&mut [F]>)| {
         for row in rows_of(index).step_by(F::LANES) {
             rows::load(given, row, work);
+            if !work.given().into_iter().all(lanes_are_finite::<F>) {
+                rows::refuse_not_finite(&given, sizes, row..rows.min(row + F::LANES))?;
+            }
             algorithm.run(model, work)?;
-            for (to, (from, columns)) in out.iter_mut().zip(work.out.iter().zip(&columns)) {
-                rows::scatter(&from[..*columns], to, row - index * task);
+            for (i, (to, columns)) in out.iter_mut().zip(&columns).enumerate() {
+                let from = &work.out[i][..*columns];
+                rows::scatter(from, to, row - index * task);
+                if !lanes_are_finite::<F>(from) {
+                    let lane = (0..F::LANES).find(|lane| from.iter().any(|x| !F::each(x)[*lane].is_finite()));
+                    return Err(diverged(algorithm.names()[i], row + lane.unwrap_or(0)));
+                }
             }
         }
         Ok(())
     };
     in_parallel(tasks, || Work::new(model), run)
+}
+
+fn diverged(result: &str, row: usize) -> Error {
+    Error {
+        kind: ErrorKind::Diverged,
+        file: String::new(),
+        element: String::new(),
+        problem: format!("the result `{result}[{row}]` is not finite"),
+        remedy: "check the size of the numbers given".to_owned(),
+    }
+}
+
+/// Whether all numbers are finite, without a branch for each.
+fn all_finite<F: Real>(numbers: &[F]) -> bool {
+    numbers.iter().fold(true, |all, x| all & x.is_finite())
+}
+
+fn lanes_are_finite<F: Real>(lanes: &[F::Lanes]) -> bool {
+    lanes.iter().fold(true, |all, x| all & all_finite(F::each(x)))
 }
 
 /// Runs tasks on all cores, or on those of the pool of rayon's that this is called in; a single one in the calling thread, which is

@@ -2,25 +2,56 @@
 
 use super::work::Work;
 use super::{Given, Real};
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
 use gyroflex::model::SizeError;
+use std::ops::Range;
 
 /// Whether all that is given has so many rows, or one.
 pub(super) fn check<F: Real>(model: &OwnedModel, rows: usize, given: &Given<F>) -> Result<(), Error> {
-    let (nq, nv) = (model.nq(), model.nv());
-    let Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext } = *given;
-    let over_joints = [
-        ("qd", qd),
-        ("theta", theta),
-        ("thetad", thetad),
-        ("qdd", qdd),
-        ("thetadd", thetadd),
-        ("tau", tau),
-        ("tau_ext", tau_ext),
-    ];
-    fits("q", q, nq, rows)?;
-    over_joints.into_iter().try_for_each(|(name, all)| if all.is_empty() { Ok(()) } else { fits(name, all, nv, rows) })
+    fits("q", given.q, model.nq(), rows)?;
+    let over_joints = given.named().into_iter().skip(1).filter(|(_, all)| !all.is_empty());
+    over_joints.into_iter().try_for_each(|(name, all)| fits(name, all, model.nv(), rows))
+}
+
+impl<'a, F> Given<'a, F> {
+    /// All arrays by name, the positions first.
+    fn named(&self) -> [(&'static str, &'a [F]); 8] {
+        let Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext } = *self;
+        [
+            ("q", q),
+            ("qd", qd),
+            ("theta", theta),
+            ("thetad", thetad),
+            ("qdd", qdd),
+            ("thetadd", thetadd),
+            ("tau", tau),
+            ("tau_ext", tau_ext),
+        ]
+    }
+}
+
+/// Names an entry of these rows, or of an array of a single one, that is not finite.
+pub(super) fn refuse_not_finite<F: Real>(
+    given: &Given<F>,
+    columns: [usize; 2],
+    rows: Range<usize>,
+) -> Result<(), Error> {
+    for (i, (name, all)) in given.named().into_iter().enumerate() {
+        let n = columns[i.min(1)];
+        let part = if all.len() == n { 0..n } else { rows.start * n..all.len().min(rows.end * n) };
+        if let Some(k) = all.get(part.clone()).and_then(|part| part.iter().position(|x| !x.is_finite())) {
+            let (at, value): (usize, f64) = (part.start + k, all[part.start + k].into());
+            return Err(Error {
+                kind: ErrorKind::Shape,
+                file: String::new(),
+                element: name.to_owned(),
+                problem: format!("entry {} of row {} is {value}", at % n, at / n),
+                remedy: "give finite numbers".to_owned(),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Whether an array has so many rows, or one.

@@ -52,6 +52,12 @@ impl<T: Scalar> Work<T> {
             scratch: Scratch::new(model),
         }
     }
+
+    /// All that is given.
+    pub(super) fn given(&self) -> [&[T]; 8] {
+        let Self { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext, .. } = self;
+        [q, qd, theta, thetad, qdd, thetadd, tau, tau_ext]
+    }
 }
 
 impl<T: Scalar> Scratch<T> {
