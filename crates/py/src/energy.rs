@@ -7,6 +7,7 @@ use crate::robot::PyRobot;
 use crate::workspace::Workspace;
 use gyroflex::dynamics::{self, Axes, Frame, State};
 use gyroflex_sim::batch::Algorithm;
+use gyroflex_sim::bending::RIGID;
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -22,12 +23,12 @@ impl PyRobot {
     /// model
     ///     Which physics of the motors.
     /// out
-    ///     Three arrays of shape `(batch,)` that take the results.
+    ///     Three arrays that take the results, of shape `()`, of a batch `(batch,)`.
     ///
     /// Returns
     /// -------
     /// (kinetic, gravity, elastic)
-    ///     Numbers of one state, arrays of shape `(batch,)` of many.
+    ///     Of one state a `float` each, in float32 or with `out` an array of shape `()`; of many arrays of shape `(batch,)`.
     #[pyo3(signature = (q, qd, theta=None, thetad=None, *, model=None, out=None))]
     #[expect(clippy::too_many_arguments, reason = "they are the state")]
     fn energy<'py>(
@@ -42,7 +43,7 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let single = || {
             self.with(model, |w| {
-                self.layout.state(w, q, qd, theta, thetad)?;
+                self.layout.or_batch().state(w, q, qd, theta, thetad)?;
                 let Workspace { dynamics, q, qd, theta, thetad, .. } = w;
                 let e = dynamics.energy(State { q, qd, theta, thetad }).map_err(errors::raise)?;
                 Ok((e.kinetic, e.gravity, e.elastic).into_pyobject(py)?.into_any())
@@ -83,15 +84,12 @@ impl PyRobot {
         let Some(body) = link.body else {
             return Err(errors::argument("frame", format!("the link `{frame}` does not move"), "name a moving link"));
         };
-        if self.layout.modes > 0 {
-            let problem = "the robot has links that bend";
-            return Err(errors::argument("frame", problem, "take the robot without `flexible_links`"));
-        }
+        self.robot.refuse_bending("the Jacobian of a frame", RIGID).map_err(errors::raise)?;
         let axes = crate::arguments::choice("axes", axes, &[("world", Axes::World), ("local", Axes::Local)])?;
         let frame = Frame { body, placement: link.placement };
         let single = || {
             self.with(None, |w| {
-                self.layout.positions(q, &mut w.q)?;
+                self.layout.or_batch().positions(q, &mut w.q)?;
                 w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
                 let nv = self.layout.nv;
                 let mut rows = vec![0.0; 6 * nv];
