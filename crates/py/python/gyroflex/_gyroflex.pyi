@@ -4,7 +4,7 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -59,6 +59,7 @@ _Direction: TypeAlias = Literal["rx", "ry", "rz", "x", "y", "z"]
 _Point: TypeAlias = tuple[float, float, float]
 _Vector: TypeAlias = NDArray[np.float64]
 _Matrix: TypeAlias = NDArray[np.float64]
+_Single: TypeAlias = NDArray[np.float32]
 _Blocks: TypeAlias = NDArray[np.float64]
 _Complexes: TypeAlias = NDArray[np.complex128]
 
@@ -403,7 +404,7 @@ class Robot:
     """A robot with its drives, loaded from files.
 
     Where a method takes `out`, its arrays may also be of shape `(batch, n)`, any of them; results lead with that axis. All in float32
-    gives float32, else float64.
+    gives float32, else float64; derivatives, the regressor, and robots with links that bend are in float64 always.
     """
 
     @staticmethod
@@ -465,6 +466,22 @@ class Robot:
     def warnings(self) -> list[str]:
         """What of the robot's files was ignored or assumed."""
 
+    @overload
+    def forward_dynamics(
+        self,
+        q: _Single,
+        qd: _Single,
+        theta: _Single | None = None,
+        thetad: _Single | None = None,
+        tau: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        tau_ext: _Single | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def forward_dynamics(
         self,
         q: ArrayLike,
@@ -479,6 +496,23 @@ class Robot:
     ) -> tuple[_Vector, _Vector]:
         """Accelerations `(qdd, thetadd)` of links and motors, shape `(nv,)` each."""
 
+    @overload
+    def inverse_dynamics(
+        self,
+        q: _Single,
+        qd: _Single,
+        qdd: _Single,
+        theta: _Single | None = None,
+        thetad: _Single | None = None,
+        thetadd: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        tau_ext: _Single | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def inverse_dynamics(
         self,
         q: ArrayLike,
@@ -494,19 +528,44 @@ class Robot:
     ) -> tuple[_Vector, _Vector]:
         """Torques `(tau_j, tau)` of transmissions and motors that a motion asks for, shape `(nv,)` each [N m or N]."""
 
-    def mass_matrix(
-        self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None
-    ) -> NDArray[np.float64]:
+    @overload
+    def mass_matrix(self, q: _Single, *, model: _Model | None = None, out: _Single | None = None) -> _Single:
+        """The same in float32."""
+
+    @overload
+    def mass_matrix(self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None) -> _Matrix:
         """Inertia matrix `M(q)` of the link side, shape `(nv, nv)`."""
 
-    def coupling_matrix(
-        self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None
-    ) -> NDArray[np.float64]:
+    @overload
+    def coupling_matrix(self, q: _Single, *, model: _Model | None = None, out: _Single | None = None) -> _Single:
+        """The same in float32."""
+
+    @overload
+    def coupling_matrix(self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None) -> _Matrix:
         """Inertial coupling `S(q)` of links (rows) and motors (columns), shape `(nv, nv)`."""
 
-    def placement(self, frame: str, q: ArrayLike, *, out: _Matrix | None = None) -> NDArray[np.float64]:
+    @overload
+    def placement(self, frame: str, q: _Single, *, out: _Single | None = None) -> _Single:
+        """The same in float32."""
+
+    @overload
+    def placement(self, frame: str, q: ArrayLike, *, out: _Matrix | None = None) -> _Matrix:
         """Pose of a link in the world, shape `(4, 4)`."""
 
+    @overload
+    def energy(
+        self,
+        q: _Single,
+        qd: _Single,
+        theta: _Single | None = None,
+        thetad: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def energy(
         self,
         q: ArrayLike,
@@ -517,8 +576,20 @@ class Robot:
         model: _Model | None = None,
         out: Sequence[_Vector] | None = None,
     ) -> tuple[Any, Any, Any]:
-        """Energies `(kinetic, gravity, elastic)` [J]: numbers of one state, arrays of shape `(batch,)` of many."""
+        """Energies `(kinetic, gravity, elastic)` [J]: numbers of one state, arrays of shape `(batch,)` of many, `()` with `out`."""
 
+    @overload
+    def jacobian(
+        self,
+        frame: str,
+        q: _Single,
+        *,
+        axes: Literal["world", "local"] = "world",
+        out: _Single | None = None,
+    ) -> _Single:
+        """The same in float32."""
+
+    @overload
     def jacobian(
         self,
         frame: str,
@@ -529,6 +600,23 @@ class Robot:
     ) -> _Matrix:
         """Jacobian of a link's frame, shape `(6, nv)` or `(batch, 6, nv)`, angular rows first."""
 
+    @overload
+    def rollout(
+        self,
+        q0: _Single,
+        qd0: _Single,
+        tau: _Single,
+        dt: float,
+        *,
+        theta0: _Single | None = None,
+        thetad0: _Single | None = None,
+        steps: int | None = None,
+        integrator: Literal["semi_implicit_euler", "rk4"] = "semi_implicit_euler",
+        model: _Model | None = None,
+    ) -> tuple[_Single, _Single, _Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def rollout(
         self,
         q0: ArrayLike,
@@ -542,7 +630,7 @@ class Robot:
         integrator: Literal["semi_implicit_euler", "rk4"] = "semi_implicit_euler",
         model: _Model | None = None,
     ) -> tuple[_Blocks, _Blocks, _Blocks, _Blocks]:
-        """States `(q, qd, theta, thetad)` of many motions with fixed steps of `dt` [s], shape `(batch, steps + 1, n)` each."""
+        """States `(q, qd, theta, thetad)` of many motions with fixed steps of `dt` [s], shape `(batch, steps + 1, n)` each, or `(steps + 1, n)` of one."""
 
     @property
     def drives(self) -> dict[str, Drive]:
@@ -578,12 +666,25 @@ class Robot:
         rotor_inertia: Mapping[str, float] | None = None,
         friction: Mapping[str, Mapping[str, Any]] | None = None,
         model: _Model | None = None,
-        gravity: Sequence[float] | None = None,
+        gravity: ArrayLike | None = None,
         payload: Mapping[str, Any] | None = None,
         set: Mapping[str, Any] | None = None,
     ) -> Robot:
         """A copy of the robot with other numbers, validated: of drives by the names of their joints, or of any key of its YAML."""
 
+    @overload
+    def coriolis_matrices(
+        self,
+        q: _Single,
+        qd: _Single,
+        thetad: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def coriolis_matrices(
         self,
         q: ArrayLike,
@@ -595,6 +696,18 @@ class Robot:
     ) -> tuple[_Matrix, _Matrix, _Matrix]:
         """Blocks `(C, C1, C2)` of the Coriolis matrix in Christoffel form, shape `(nv, nv)` each."""
 
+    @overload
+    def inertia_rates(
+        self,
+        q: _Single,
+        qd: _Single,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def inertia_rates(
         self,
         q: ArrayLike,
@@ -605,6 +718,19 @@ class Robot:
     ) -> tuple[_Matrix, _Matrix]:
         """Time derivatives of `mass_matrix` and `coupling_matrix` along a motion, shape `(nv, nv)` each."""
 
+    @overload
+    def bias(
+        self,
+        q: _Single,
+        qd: _Single,
+        thetad: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def bias(
         self,
         q: ArrayLike,
@@ -616,6 +742,11 @@ class Robot:
     ) -> tuple[_Vector, _Vector]:
         """What links and motors need at zero acceleration, beside friction, springs and loads, shape `(nv,)` each."""
 
+    @overload
+    def gravity_torques(self, q: _Single, *, out: _Single | None = None) -> _Single:
+        """The same in float32."""
+
+    @overload
     def gravity_torques(self, q: ArrayLike, *, out: _Matrix | None = None) -> _Vector:
         """Generalised forces that hold the links against gravity, shape `(nv,)`."""
 
@@ -629,7 +760,7 @@ class Robot:
         *,
         model: _Model | None = None,
         tau_ext: ArrayLike | None = None,
-        out: tuple[_Blocks, _Blocks] | None = None,
+        out: Sequence[_Blocks] | None = None,
     ) -> tuple[_Blocks, _Blocks]:
         """Derivatives of `qdd` and `thetadd` by `q, qd, theta, thetad, tau`, shape `(5, nv, nv)` or `(batch, 5, nv, nv)` each."""
 
@@ -644,7 +775,7 @@ class Robot:
         *,
         model: _Model | None = None,
         tau_ext: ArrayLike | None = None,
-        out: tuple[_Blocks, _Blocks] | None = None,
+        out: Sequence[_Blocks] | None = None,
     ) -> tuple[_Blocks, _Blocks]:
         """Derivatives of `tau_j` and `tau` by `q, qd, qdd, theta, thetad, thetadd`, shape `(6, nv, nv)` or `(batch, 6, nv, nv)` each."""
 
@@ -658,7 +789,7 @@ class Robot:
         thetadd: ArrayLike | None = None,
         *,
         model: _Model | None = None,
-        out: tuple[_Matrix, _Matrix, _Matrix] | None = None,
+        out: Sequence[_Matrix] | None = None,
     ) -> tuple[_Matrix, _Matrix, _Matrix]:
         """Matrices of links, transmissions and motors that `parameters` enter linearly, shape `(nv, 20 bodies)` each; or batches."""
 
@@ -672,9 +803,9 @@ class Robot:
         qd: ArrayLike,
         thetad: ArrayLike | None = None,
         *,
-        directions: list[_Direction] | None = None,
+        directions: Sequence[_Direction] | None = None,
         rotation: Literal["geometric", "rpy", "zyz"] = "geometric",
-        point: tuple[float, float, float] | None = None,
+        point: ArrayLike | None = None,
         threshold: float = 1e-6,
         model: _Model | None = None,
     ) -> dict[str, Any]:
@@ -757,7 +888,11 @@ class Robot:
         torque_derivatives: int = 0,
         damping: float | None = None,
     ) -> ElasticInverse:
-        """Motions and torques of the motors that make the links move as asked; `derivatives` has shape `(order, nv)`."""
+        """Motions and torques of the motors that make the links move as asked, at one moment or over time.
+
+        `q` has shape `(nq,)` or `(times, nq)`, `derivatives` `(order, nv)` or `(times, order, nv)`, `tau_ext` `(nv,)`, or with its time
+        derivatives `(rows, nv)`, or over time `(times, nv)` or `(times, rows, nv)`.
+        """
 
     def linearize(
         self,
