@@ -1,15 +1,18 @@
 //! When do the rotors matter: what `gyroflex analyze` finds, as a dictionary.
 
-use crate::errors;
 use crate::robot::PyRobot;
 use crate::simulate::SIGNAL_INTERVAL;
-use gyroflex_sim::ScenarioFile;
+use crate::{errors, named};
 use gyroflex_sim::analyze::{Options, of_log, of_scenario, of_workspace};
 use gyroflex_sim::load::Disk;
+use gyroflex_sim::{Error, ScenarioFile};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
+
+/// Motions that are kept at once, some hundred bytes each.
+const MOST_SAMPLES: usize = 10_000_000;
 
 #[pymethods]
 impl PyRobot {
@@ -45,13 +48,17 @@ impl PyRobot {
         py: Python<'py>,
         scenario: Option<PathBuf>,
         log: Option<PathBuf>,
-        samples: usize,
-        seed: u64,
-        speed: Option<f64>,
-        rise: f64,
-        threshold: f64,
+        #[pyo3(from_py_with = named::samples)] samples: usize,
+        #[pyo3(from_py_with = named::seed)] seed: u64,
+        #[pyo3(from_py_with = named::speed)] speed: Option<f64>,
+        #[pyo3(from_py_with = named::rise)] rise: f64,
+        #[pyo3(from_py_with = named::threshold)] threshold: f64,
         bounds: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
+        if samples > MOST_SAMPLES {
+            let remedy = format!("give at most {MOST_SAMPLES}, which is far more than is needed");
+            return Err(errors::argument("samples", format!("{samples} motions are more than fit"), remedy));
+        }
         let options = Options { samples, seed, speed, rise, threshold, bounds };
         let mut signal = Ok(());
         let report = py.detach(|| match (&scenario, &log) {
@@ -66,13 +73,21 @@ impl PyRobot {
                     if signal.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
                 };
                 let file = ScenarioFile::load(&Disk, path).map_err(errors::raise)?;
-                of_scenario(&self.robot, &file, &options, &mut progress).map_err(errors::raise)
+                of_scenario(&self.robot, &file, &options, &mut progress).map_err(about_options)
             }
-            (None, Some(path)) => of_log(&self.robot, path, &options).map_err(errors::raise),
-            (None, None) => of_workspace(&self.robot, &options).map_err(errors::raise),
+            (None, Some(path)) => of_log(&self.robot, path, &options).map_err(about_options),
+            (None, None) => of_workspace(&self.robot, &options).map_err(about_options),
         });
         signal?;
         let text = report?.to_json().map_err(errors::raise)?;
         py.import("json")?.call_method1("loads", (text,))
+    }
+}
+
+/// Options that mean nothing are arguments here.
+fn about_options(e: Error) -> PyErr {
+    match e.element.as_str() {
+        option @ ("samples" | "speed" | "rise" | "threshold") => errors::argument(option, e.problem, e.remedy),
+        _ => errors::raise(e),
     }
 }

@@ -1,5 +1,6 @@
 //! The arguments every call of a robot shares: positions, velocities, motors, forces, and the name of a model.
 
+use crate::arrays::Fit;
 use crate::workspace::Workspace;
 use crate::{arrays, errors};
 use gyroflex::model::Fidelity;
@@ -21,21 +22,42 @@ pub(crate) struct Layout {
     /// How many of these are modes of links that bend, the last ones.
     pub(crate) modes: usize,
     pub(crate) floating: bool,
+    /// What the call takes several of, too, as its messages then say: a batch of states, or times.
+    pub(crate) several: Option<&'static str>,
 }
 
 impl Layout {
+    /// The layout for a call that takes one state or a batch.
+    pub(crate) fn or_batch(self) -> Self {
+        Self { several: Some("batch"), ..self }
+    }
+
+    /// The layout for a call that takes one moment or many.
+    pub(crate) fn or_times(self) -> Self {
+        Self { several: Some("times"), ..self }
+    }
+
     /// Joint positions; the quaternion of a floating root must be a unit quaternion and is freed of rounding to fewer digits.
     pub(crate) fn positions(&self, value: &Bound<'_, PyAny>, q: &mut [f64]) -> PyResult<()> {
-        arrays::read("q", value, self.given(value, q), POSITIONS)?;
+        self.positions_of("q", value, q)
+    }
+
+    /// Joint positions by another name.
+    pub(crate) fn positions_of(&self, name: &str, value: &Bound<'_, PyAny>, q: &mut [f64]) -> PyResult<()> {
+        arrays::read_fitting(name, value, self.given(value, q), self.fit(0, POSITIONS))?;
         if !self.floating {
             return Ok(());
         }
-        unit_quaternion(&mut q[3..7]).map_err(|e| errors::argument("q", e.problem, e.remedy))
+        unit_quaternion(&mut q[3..7]).map_err(|e| errors::argument(name, e.problem, e.remedy))
     }
 
     /// Joint velocities or accelerations.
     pub(crate) fn velocities(&self, name: &str, value: &Bound<'_, PyAny>, out: &mut [f64]) -> PyResult<()> {
-        arrays::read(name, value, self.given(value, out), VELOCITIES)
+        arrays::read_fitting(name, value, self.given(value, out), self.fit(0, VELOCITIES))
+    }
+
+    fn fit(&self, skip: usize, meaning: &'static str) -> Fit<'static> {
+        Fit { skip, several: self.several, meaning }
     }
 
     /// What of a vector over joints and modes an argument gives: all, or with the modes left out the joints. Those are zero then.
@@ -48,6 +70,20 @@ impl Layout {
         }
         out[joints..].fill(0.0);
         &mut out[..joints]
+    }
+
+    /// A state of which the motors' positions do not count.
+    pub(crate) fn motion(
+        &self,
+        w: &mut Workspace,
+        q: &Bound<'_, PyAny>,
+        qd: &Bound<'_, PyAny>,
+        thetad: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        self.positions(q, &mut w.q)?;
+        self.velocities("qd", qd, &mut w.qd)?;
+        w.theta.fill(0.0);
+        self.motors("thetad", thetad, w.elastic, &mut w.thetad)
     }
 
     /// Positions and velocities of joints and motors.
@@ -75,10 +111,7 @@ impl Layout {
     ) -> PyResult<()> {
         match value {
             Some(value) => self.forces(name, value, out),
-            None if needed => {
-                let remedy = format!("give {} numbers, or choose a model with rigid transmissions", self.nv);
-                Err(errors::argument(name, "it is missing, but the robot has elastic joints in this model", remedy))
-            }
+            None if needed => Err(errors::missing_of_elastic(name)),
             None => {
                 out.fill(0.0);
                 Ok(())
@@ -88,7 +121,8 @@ impl Layout {
 
     /// Motor torques or generalised forces; a floating root's six may be left out.
     pub(crate) fn forces(&self, name: &str, value: &Bound<'_, PyAny>, out: &mut [f64]) -> PyResult<()> {
-        arrays::read_without(name, value, if self.floating { ROOT } else { 0 }, self.given(value, out), VELOCITIES)
+        let skip = if self.floating { ROOT } else { 0 };
+        arrays::read_fitting(name, value, self.given(value, out), self.fit(skip, VELOCITIES))
     }
 
     /// Generalised forces from outside; zeros for none.

@@ -19,10 +19,7 @@ pub(crate) type Complexes<'py> = Bound<'py, PyArray1<Complex64>>;
 /// `ShapeError` if it is not a vector of that length, `NotFiniteError` if an entry is not finite, `ArgumentError` if it holds
 /// no real numbers.
 pub(crate) fn read(name: &str, value: &Bound<'_, PyAny>, out: &mut [f64], meaning: &str) -> PyResult<()> {
-    let n = out.len();
-    copy(name, value, out, |shape| {
-        errors::shape(name, format!("an array of shape {shape} is given, but ({n},) is expected"), meaning)
-    })
+    read_fitting(name, value, out, Fit { skip: 0, several: None, meaning })
 }
 
 /// Like [`read`], and an array without the leading `skip` entries is welcome too: those become zero.
@@ -33,15 +30,33 @@ pub(crate) fn read_without(
     out: &mut [f64],
     meaning: &str,
 ) -> PyResult<()> {
-    if skip == 0 || value.len().is_ok_and(|n| n == out.len()) {
-        return read(name, value, out, meaning);
-    }
+    read_fitting(name, value, out, Fit { skip, several: None, meaning })
+}
+
+/// What a vector argument may be, and how a message says it.
+#[derive(Clone, Copy)]
+pub(crate) struct Fit<'a> {
+    /// Leading entries that may be left out, and become zero then.
+    pub(crate) skip: usize,
+    /// What the call takes several of, elsewhere: the name of the axis that leads then.
+    pub(crate) several: Option<&'a str>,
+    /// What its entries are.
+    pub(crate) meaning: &'a str,
+}
+
+/// Copies a vector argument that fits into `out`.
+pub(crate) fn read_fitting(name: &str, value: &Bound<'_, PyAny>, out: &mut [f64], fit: Fit<'_>) -> PyResult<()> {
     let n = out.len();
-    let (head, tail) = out.split_at_mut(skip);
+    let whole = fit.skip == 0 || value.len().is_ok_and(|given| given == n);
+    let (head, tail) = out.split_at_mut(if whole { 0 } else { fit.skip });
     head.fill(0.0);
     copy(name, value, tail, |shape| {
-        let expected = format!("({n},), or ({},) without the root,", n - skip);
-        errors::shape(name, format!("an array of shape {shape} is given, but {expected} is expected"), meaning)
+        let more = |n: usize| fit.several.map_or(String::new(), |axis| format!(" or ({axis}, {n})"));
+        let shapes = |n: usize| format!("({n},){}", more(n));
+        let rootless =
+            if fit.skip == 0 { String::new() } else { format!(", or without the root {},", shapes(n - fit.skip)) };
+        let problem = format!("an array of shape {shape} is given, but {}{rootless} is expected", shapes(n));
+        errors::shape(name, problem, fit.meaning)
     })
 }
 

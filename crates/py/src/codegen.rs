@@ -2,10 +2,10 @@
 
 use crate::robot::PyRobot;
 use crate::simulate::SIGNAL_INTERVAL;
-use crate::{arguments, errors};
-use gyroflex_sim::ScenarioFile;
-use gyroflex_sim::codegen::{Generated, Language, Precision, Request, Simplify, Style, Target, generate};
+use crate::{arguments, errors, named};
+use gyroflex_sim::codegen::{Generated, Language, NOT_EXPLICIT, Precision, Request, Simplify, Style, Target, generate};
 use gyroflex_sim::load::Disk;
+use gyroflex_sim::{Error, ScenarioFile};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -98,23 +98,23 @@ impl PyRobot {
     #[pyo3(signature = (what=None, *, lang="python", model=None, scalar="f64",
         lanes=None, keep_symbol=Vec::new(), link=None, simplify_to=None, along=None, split=None, name=None))]
     #[pyo3(
-        text_signature = "(self, what=('forward', 'inverse'), *, lang='python', model=None, scalar='f64', lanes=None, \
+        text_signature = "($self, what=('forward', 'inverse'), *, lang='python', model=None, scalar='f64', lanes=None, \
         keep_symbol=(), link=None, simplify_to=None, along=None, split=None, name=None)"
     )]
     #[expect(clippy::too_many_arguments, reason = "most of them may be left out")]
     fn codegen(
         &self,
         py: Python<'_>,
-        what: Option<Names>,
+        #[pyo3(from_py_with = named::what)] what: Option<Vec<String>>,
         lang: &str,
         model: Option<&str>,
         scalar: &str,
-        lanes: Option<usize>,
-        keep_symbol: Vec<String>,
+        #[pyo3(from_py_with = named::lanes)] lanes: Option<usize>,
+        #[pyo3(from_py_with = named::keep_symbol)] keep_symbol: Vec<String>,
         link: Option<String>,
-        simplify_to: Option<f64>,
+        #[pyo3(from_py_with = named::simplify_to)] simplify_to: Option<f64>,
         along: Option<PathBuf>,
-        split: Option<usize>,
+        #[pyo3(from_py_with = named::split)] split: Option<usize>,
         name: Option<String>,
     ) -> PyResult<PyGeneratedCode> {
         let (language, target) = arguments::choice("lang", lang, &LANGUAGES)?;
@@ -124,7 +124,7 @@ impl PyRobot {
             return Err(errors::argument("along", "no terms are dropped", "give simplify_to, too, such as 1e-3"));
         }
         let request = Request {
-            what: what.map_or_else(|| vec!["forward".to_owned(), "inverse".to_owned()], Names::all),
+            what: what.unwrap_or_else(|| ["forward", "inverse"].map(str::to_owned).to_vec()),
             target,
             style: Style { precision, lanes },
             fidelity: model.map(arguments::fidelity).transpose()?,
@@ -146,7 +146,7 @@ impl PyRobot {
             };
             let generated = generate(&self.robot, &request, &mut progress);
             signal?;
-            generated.map_err(errors::raise)
+            generated.map_err(|e| about_arguments(e, language))
         })?;
         // Nothing but a signal, raised above, ends it early.
         let generated = generated.ok_or_else(|| PyErr::new::<pyo3::exceptions::PyKeyboardInterrupt, _>(()))?;
@@ -154,20 +154,38 @@ impl PyRobot {
     }
 }
 
-/// One name or several.
-#[derive(FromPyObject)]
-enum Names {
-    One(String),
-    Many(Vec<String>),
+/// What is wrong with what was asked for, by the names of Python instead of those of the command line.
+fn about_arguments(e: Error, language: &str) -> PyErr {
+    // What of an argument is concerned stands after its name.
+    let (name, value) = e.element.split_once(' ').unwrap_or((&e.element, ""));
+    let argument = match name.strip_prefix("--") {
+        Some(option) => option.replace('-', "_"),
+        None if e.element != NOT_EXPLICIT => return errors::raise(e),
+        None if language == "latex" => "lang".to_owned(),
+        None => "simplify_to".to_owned(),
+    };
+    let problem =
+        if value.is_empty() || e.element == NOT_EXPLICIT { e.problem } else { format!("`{value}`: {}", e.problem) };
+    errors::argument(&argument, problem, in_python(&e.remedy))
 }
 
-impl Names {
-    fn all(self) -> Vec<String> {
-        match self {
-            Self::One(name) => vec![name],
-            Self::Many(names) => names,
+/// `--lang rust` becomes `lang="rust"`, `--simplify-to` becomes `simplify_to`.
+fn in_python(text: &str) -> String {
+    let mut words = text.split(' ').peekable();
+    let mut said = Vec::new();
+    while let Some(word) = words.next() {
+        let Some(option) = word.strip_prefix("--") else {
+            said.push(word.to_owned());
+            continue;
+        };
+        let name: String = option.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '-').collect();
+        let (rest, name) = (&option[name.len()..], name.replace('-', "_"));
+        match words.next_if(|_| name == "lang") {
+            Some(value) => said.push(format!("`{name}=\"{value}\"`{rest}")),
+            None => said.push(format!("`{name}`{rest}")),
         }
     }
+    said.join(" ")
 }
 
 /// Languages by their names.

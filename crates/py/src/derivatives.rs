@@ -40,12 +40,13 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let nv = self.layout.nv;
         let read = |w: &mut Workspace| {
-            self.layout.state(w, q, qd, theta, thetad)?;
+            let layout = self.layout.or_batch();
+            layout.state(w, q, qd, theta, thetad)?;
             let Some(tau) = tau else {
-                return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
+                return Err(errors::missing_torques("tau"));
             };
-            self.layout.forces("tau", tau, &mut w.tau)?;
-            self.layout.load_or_none(tau_ext, &mut w.tau_ext)
+            layout.forces("tau", tau, &mut w.tau)?;
+            layout.load_or_none(tau_ext, &mut w.tau_ext)
         };
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![0.0; nv]);
@@ -95,7 +96,7 @@ impl PyRobot {
         let nv = self.layout.nv;
         let read = |w: &mut Workspace| {
             self.motion_of(w, [q, qd, qdd], [theta, thetad, thetadd])?;
-            self.layout.load_or_none(tau_ext, &mut w.tau_ext)
+            self.layout.or_batch().load_or_none(tau_ext, &mut w.tau_ext)
         };
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             let [mut tau_j, mut tau] = [(); 2].map(|()| vec![0.0; 6 * nv * nv]);
@@ -165,9 +166,10 @@ impl PyRobot {
         [q, qd, qdd]: [&Bound<'_, PyAny>; 3],
         [theta, thetad, thetadd]: [Option<&Bound<'_, PyAny>>; 3],
     ) -> PyResult<()> {
-        self.layout.state(w, q, qd, theta, thetad)?;
-        self.layout.velocities("qdd", qdd, &mut w.qdd)?;
-        self.layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)
+        let layout = self.layout.or_batch();
+        layout.state(w, q, qd, theta, thetad)?;
+        layout.velocities("qdd", qdd, &mut w.qdd)?;
+        layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)
     }
 }
 

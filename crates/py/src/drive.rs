@@ -1,11 +1,11 @@
 //! The drives of a robot, and copies of a robot with other numbers.
 
 use crate::arguments;
-use crate::errors;
-use crate::overrides::overrides;
+use crate::overrides::{self, overrides};
 use crate::robot::PyRobot;
+use crate::{errors, named};
 use gyroflex::model::{DriveSpec, SpringSpec, TransmissionSpec};
-use gyroflex_sim::load::{LoadOptions, load, load_urdf_text};
+use gyroflex_sim::load::{LoadOptions, URDF_TEXT, load, load_urdf_text};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ impl Origin {
     pub(crate) fn read(self, py: Python<'_>, options: LoadOptions) -> PyResult<PyRobot> {
         let robot = py.detach(|| match &self {
             Self::File(path) => load(path, &options),
-            Self::Text(urdf, drives) => load_urdf_text(urdf, "robot.urdf", drives.as_deref(), &options),
+            Self::Text(urdf, drives) => load_urdf_text(urdf, URDF_TEXT, drives.as_deref(), &options),
         });
         PyRobot::new(py, robot.map_err(errors::raise)?, self, options)
     }
@@ -32,7 +32,9 @@ impl Origin {
 /// The argument `drives`.
 #[derive(FromPyObject)]
 enum Drives<'py> {
+    #[pyo3(transparent, annotation = "str")]
     Yaml(String),
+    #[pyo3(transparent, annotation = "Mapping")]
     ByJoint(Bound<'py, PyMapping>),
 }
 
@@ -131,9 +133,7 @@ impl PyRobot {
         let yaml = match drives {
             Some(Drives::Yaml(text)) => Some(text),
             Some(Drives::ByJoint(drives)) => {
-                let keys = PyDict::new(py);
-                keys.set_item("drives", drives)?;
-                options.overrides = overrides(Some(keys.as_any().cast::<PyMapping>()?))?;
+                options.overrides = overrides::one("drives", &drives)?;
                 None
             }
             None => None,
@@ -168,6 +168,11 @@ impl PyRobot {
         model: Option<&str>,
         set: Option<&Bound<'py, PyMapping>>,
     ) -> PyResult<Self> {
+        let class = py.import("gyroflex.builder")?.getattr("RobotBuilder")?;
+        if !builder.is_instance(&class)? {
+            let problem = format!("it is of type `{}`", builder.get_type().name()?);
+            return Err(errors::argument("builder", problem, "give a `RobotBuilder`"));
+        }
         let urdf = builder.call_method0("urdf")?.extract()?;
         let drives = builder.getattr("drives")?.cast_into::<PyMapping>()?;
         Self::from_urdf(py, urdf, Some(Drives::ByJoint(drives)), floating, model, set)
@@ -204,40 +209,35 @@ impl PyRobot {
         rotor_inertia: Option<&Bound<'py, PyMapping>>,
         friction: Option<&Bound<'py, PyMapping>>,
         model: Option<&str>,
-        gravity: Option<[f64; 3]>,
+        #[pyo3(from_py_with = named::gravity)] gravity: Option<[f64; 3]>,
         payload: Option<&Bound<'py, PyMapping>>,
         set: Option<&Bound<'py, PyMapping>>,
     ) -> PyResult<Self> {
         let mut options = self.options.clone();
-        let all = PyDict::new(py);
         // What was given beside the file becomes a key of it, so that the last word counts.
         let model = model.map(arguments::fidelity).transpose()?;
         if let Some(model) = model.or(options.model.take()) {
-            all.set_item("model", model.name())?;
+            options.overrides.set("model", model.name());
         }
         if let Some(gravity) = gravity.or(options.gravity.take()) {
-            all.set_item("gravity", gravity)?;
+            options.overrides.set("gravity", gravity.to_vec());
         }
         let by_joint = [
-            ("transmission.stiffness", stiffness),
-            ("transmission.damping", damping),
-            ("gear_ratio", ratio),
-            ("rotor.inertia", rotor_inertia),
-            ("friction", friction),
+            ("stiffness", "transmission.stiffness", stiffness),
+            ("damping", "transmission.damping", damping),
+            ("ratio", "gear_ratio", ratio),
+            ("rotor_inertia", "rotor.inertia", rotor_inertia),
+            ("friction", "friction", friction),
         ];
-        for (key, values) in by_joint {
-            for item in values.map(|v| v.items()).transpose()?.iter().flatten() {
-                let (joint, value): (String, Bound<'_, PyAny>) = item.extract()?;
-                all.set_item(format!("drives.{joint}.{key}"), value)?;
+        for (argument, key, values) in by_joint {
+            if let Some(values) = values {
+                options.overrides.extend(&overrides::by_joint(argument, key, values)?);
             }
         }
         if let Some(payload) = payload {
-            all.set_item("payload", payload)?;
+            options.overrides.extend(&overrides::one("payload", payload)?);
         }
-        if let Some(set) = set {
-            all.update(set)?;
-        }
-        options.overrides.extend(&overrides(Some(all.as_any().cast::<PyMapping>()?))?);
+        options.overrides.extend(&overrides(set)?);
         self.origin.clone().read(py, options)
     }
 }

@@ -22,12 +22,12 @@ impl PyRobot {
     /// model
     ///     Which physics of the motors.
     /// out
-    ///     Three arrays of shape `(batch,)` that take the results.
+    ///     Three arrays that take the results, of shape `()`, of a batch `(batch,)`.
     ///
     /// Returns
     /// -------
     /// (kinetic, gravity, elastic)
-    ///     Numbers of one state, arrays of shape `(batch,)` of many.
+    ///     Of one state a `float` each, in float32 or with `out` an array of shape `()`; of many arrays of shape `(batch,)`.
     #[pyo3(signature = (q, qd, theta=None, thetad=None, *, model=None, out=None))]
     #[expect(clippy::too_many_arguments, reason = "they are the state")]
     fn energy<'py>(
@@ -42,7 +42,7 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let single = || {
             self.with(model, |w| {
-                self.layout.state(w, q, qd, theta, thetad)?;
+                self.layout.or_batch().state(w, q, qd, theta, thetad)?;
                 let Workspace { dynamics, q, qd, theta, thetad, .. } = w;
                 let e = dynamics.energy(State { q, qd, theta, thetad }).map_err(errors::raise)?;
                 Ok((e.kinetic, e.gravity, e.elastic).into_pyobject(py)?.into_any())
@@ -86,7 +86,7 @@ impl PyRobot {
         let axes = crate::arguments::choice("axes", axes, &[("world", Axes::World), ("local", Axes::Local)])?;
         let single = || {
             self.with(None, |w| {
-                self.layout.positions(q, &mut w.q)?;
+                self.layout.or_batch().positions(q, &mut w.q)?;
                 let nv = self.layout.nv;
                 let mut rows = vec![0.0; 6 * nv];
                 link.jacobian(&w.dynamics, &w.q, axes, &mut rows).map_err(errors::raise)?;

@@ -40,6 +40,17 @@ pub(crate) fn argument(name: &str, problem: impl Into<String>, remedy: impl Into
     classes::ArgumentError::new_err((problem.into(), format!("argument `{name}`"), "", remedy.into()))
 }
 
+/// Motor torques that are not given. Words of one place, for every call that needs them.
+pub(crate) fn missing_torques(name: &str) -> PyErr {
+    argument(name, "it is missing", "give the motor torques, zeros for none")
+}
+
+/// An array over the motors that only a model with elastic joints needs.
+pub(crate) fn missing_of_elastic(name: &str) -> PyErr {
+    let problem = "it is missing, but the robot has elastic joints in this model";
+    argument(name, problem, "give one entry per velocity coordinate, or choose a model with rigid transmissions")
+}
+
 /// A file that cannot be used.
 pub(crate) fn file(path: &Path, problem: impl Into<String>, remedy: impl Into<String>) -> PyErr {
     classes::FileError::new_err((problem.into(), "", path.display().to_string(), remedy.into()))

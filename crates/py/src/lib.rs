@@ -15,6 +15,7 @@ mod linear;
 mod links;
 mod log;
 mod matrices;
+mod named;
 mod operational;
 mod overrides;
 mod robot;

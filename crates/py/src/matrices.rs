@@ -29,7 +29,7 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let single = || {
             self.with(model, |w| {
-                self.layout.positions(q, &mut w.q)?;
+                self.layout.or_batch().positions(q, &mut w.q)?;
                 w.dynamics.mass_matrix(&w.q, &mut w.matrix).map_err(errors::raise)?;
                 Ok(matrix(py, "mass matrix", &w.matrix, self.layout.nv)?.into_any())
             })
@@ -57,7 +57,7 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let single = || {
             self.with(model, |w| {
-                self.layout.positions(q, &mut w.q)?;
+                self.layout.or_batch().positions(q, &mut w.q)?;
                 w.dynamics.coupling(&w.q, &mut w.matrix).map_err(errors::raise)?;
                 Ok(matrix(py, "coupling matrix", &w.matrix, self.layout.nv)?.into_any())
             })
@@ -95,7 +95,7 @@ impl PyRobot {
         let nv = self.layout.nv;
         let single = || {
             self.with(model, |w| {
-                self.motion(w, q, qd, thetad)?;
+                self.layout.or_batch().motion(w, q, qd, thetad)?;
                 let [mut c, mut c1, mut c2] = [(); 3].map(|()| vec![0.0; nv * nv]);
                 let Workspace { dynamics, q, qd, theta, thetad, .. } = w;
                 let out = CoriolisMatrices { c: &mut c, c1: &mut c1, c2: &mut c2 };
@@ -135,8 +135,8 @@ impl PyRobot {
         let nv = self.layout.nv;
         let single = || {
             self.with(model, |w| {
-                self.layout.positions(q, &mut w.q)?;
-                self.layout.velocities("qd", qd, &mut w.qd)?;
+                self.layout.or_batch().positions(q, &mut w.q)?;
+                self.layout.or_batch().velocities("qd", qd, &mut w.qd)?;
                 w.theta.fill(0.0);
                 w.thetad.fill(0.0);
                 let [mut m, mut s] = [(); 2].map(|()| vec![0.0; nv * nv]);
@@ -177,7 +177,7 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let single = || {
             self.with(model, |w| {
-                self.motion(w, q, qd, thetad)?;
+                self.layout.or_batch().motion(w, q, qd, thetad)?;
                 let Workspace { dynamics, q, qd, theta, thetad, out: [link, motor, _], .. } = w;
                 dynamics.bias(State { q, qd, theta, thetad }, Bias { link, motor }).map_err(errors::raise)?;
                 Ok((vector(py, "link", link)?, vector(py, "motor", motor)?).into_pyobject(py)?.into_any())
@@ -203,7 +203,7 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let single = || {
             self.with(None, |w| {
-                self.layout.positions(q, &mut w.q)?;
+                self.layout.or_batch().positions(q, &mut w.q)?;
                 let Workspace { dynamics, q, out: [g, ..], .. } = w;
                 dynamics.gravity_torques(q, g).map_err(errors::raise)?;
                 Ok(vector(py, "gravity torques", g)?.into_any())
@@ -223,9 +223,6 @@ impl PyRobot {
         qd: &Bound<'_, PyAny>,
         thetad: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        self.layout.positions(q, &mut w.q)?;
-        self.layout.velocities("qd", qd, &mut w.qd)?;
-        w.theta.fill(0.0);
-        self.layout.motors("thetad", thetad, w.elastic, &mut w.thetad)
+        self.layout.motion(w, q, qd, thetad)
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::arguments;
 use crate::batch::Need;
-use crate::errors;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
+use crate::{errors, named};
 use gyroflex::dynamics::{Frame, OperationalSpace, Rotation, State, Task};
 use gyroflex::spatial::{Transform, Vec3};
 use gyroflex_sim::Dynamics;
@@ -50,10 +50,10 @@ impl PyRobot {
         q: &Bound<'py, PyAny>,
         qd: &Bound<'py, PyAny>,
         thetad: Option<&Bound<'py, PyAny>>,
-        directions: Option<Vec<String>>,
+        #[pyo3(from_py_with = named::directions)] directions: Option<Vec<String>>,
         rotation: &str,
-        point: Option<[f64; 3]>,
-        threshold: f64,
+        #[pyo3(from_py_with = named::point)] point: Option<[f64; 3]>,
+        #[pyo3(from_py_with = named::threshold)] threshold: f64,
         model: Option<&str>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let link = self.link(frame)?;
@@ -61,21 +61,25 @@ impl PyRobot {
             return Err(errors::argument("frame", format!("the link `{frame}` does not move"), "name a moving link"));
         };
         let directions = match directions {
-            Some(names) => names.iter().map(|name| direction(name)).collect::<PyResult<_>>()?,
+            Some(names) => names.iter().map(|name| direction(name)).collect::<PyResult<Vec<_>>>()?,
             None => vec![0, 1, 2, 3, 4, 5],
         };
+        if directions.is_empty() || (1..directions.len()).any(|i| directions[..i].contains(&directions[i])) {
+            let problem = if directions.is_empty() { "it is empty" } else { "a direction is there twice" };
+            return Err(errors::argument("directions", problem, "give some of rx, ry, rz, x, y, z, once each"));
+        }
         let known = [("geometric", Rotation::Geometric), ("rpy", Rotation::RollPitchYaw), ("zyz", Rotation::Zyz)];
         let rotation = arguments::choice("rotation", rotation, &known)?;
         let point = point.unwrap_or_default();
-        if !(point.iter().all(|x| x.is_finite()) && (0.0..1.0).contains(&threshold)) {
-            let problem = "it is not a finite point, or `threshold` is not from 0 to 1";
-            return Err(errors::argument("point", problem, "give three finite coordinates and a small threshold"));
+        if !(0.0..1.0).contains(&threshold) {
+            let problem = format!("it is {threshold}");
+            return Err(errors::argument("threshold", problem, "give a small number, 0 or more and less than 1"));
         }
         let placement =
             Transform { pos: link.placement.pos + link.placement.rotation() * Vec3::from(point), ..link.placement };
         let task = Task { frame: Frame { body, placement }, directions: &directions, rotation, threshold };
         let (nv, m) = (self.layout.nv, directions.len());
-        let read = |w: &mut Workspace| self.motion(w, q, qd, thetad);
+        let read = |w: &mut Workspace| self.layout.or_batch().motion(w, q, qd, thetad);
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             // As many as there are names.
             let [jacobian, bias, inertia, inverse, mu, p, smallest, largest, representation] = out else {

@@ -187,13 +187,14 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let single = || {
             self.with(model, |w| {
-                self.layout.state(w, q, qd, theta, thetad)?;
+                let layout = self.layout.or_batch();
+                layout.state(w, q, qd, theta, thetad)?;
                 let Some(tau) = tau else {
-                    return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
+                    return Err(errors::missing_torques("tau"));
                 };
-                self.layout.forces("tau", tau, &mut w.tau)?;
+                layout.forces("tau", tau, &mut w.tau)?;
                 let Workspace { dynamics, q, qd, theta, thetad, tau, tau_ext: room, out, .. } = w;
-                let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
+                let ext = External { tau: layout.load(tau_ext, room)?, wrenches: &[] };
                 let [qdd, thetadd, tau_j] = out;
                 dynamics
                     .forward(State { q, qd, theta, thetad }, tau, ext, Forward { qdd, thetadd, tau_j })
@@ -247,11 +248,12 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let single = || {
             self.with(model, |w| {
-                self.layout.state(w, q, qd, theta, thetad)?;
-                self.layout.velocities("qdd", qdd, &mut w.qdd)?;
-                self.layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)?;
+                let layout = self.layout.or_batch();
+                layout.state(w, q, qd, theta, thetad)?;
+                layout.velocities("qdd", qdd, &mut w.qdd)?;
+                layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)?;
                 let Workspace { dynamics, q, qd, theta, thetad, qdd, thetadd, tau_ext: room, out, .. } = w;
-                let ext = External { tau: self.layout.load(tau_ext, room)?, wrenches: &[] };
+                let ext = External { tau: layout.load(tau_ext, room)?, wrenches: &[] };
                 let [tau_j, tau, _] = out;
                 dynamics
                     .inverse(State { q, qd, theta, thetad }, Acceleration { qdd, thetadd }, ext, Inverse { tau_j, tau })
@@ -290,7 +292,7 @@ impl PyRobot {
         let frame = self.frame(frame)?;
         let single = || {
             self.with(None, |w| {
-                self.layout.positions(q, &mut w.q)?;
+                self.layout.or_batch().positions(q, &mut w.q)?;
                 w.dynamics.placements(&w.q, &mut w.poses).map_err(errors::raise)?;
                 let pose = frame.pose(&w.poses, w.dynamics.eta(&w.q));
                 let [x, y, z] = pose.rotation().rows.map(|row| row.to_array());
@@ -314,7 +316,7 @@ impl PyRobot {
     pub(crate) fn new(py: Python<'_>, robot: Robot, origin: Origin, options: LoadOptions) -> PyResult<Self> {
         let lowered = robot.model(robot.fidelity).map_err(errors::raise)?;
         let (nq, nv, modes) = (lowered.nq(), lowered.nv(), robot.flexible.modes());
-        let layout = Layout { nq, nv, modes, floating: robot.is_floating() };
+        let layout = Layout { nq, nv, modes, floating: robot.is_floating(), several: None };
         errors::warn(py, &robot.warnings)?;
         Ok(Self { robot, pool: Pool::default(), inverses: Inverses::default(), layout, origin, options })
     }

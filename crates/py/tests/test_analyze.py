@@ -39,7 +39,7 @@ def test_scenarios_are_those_of_the_command_line(binary: Path) -> None:
 
 def test_what_means_nothing_is_refused() -> None:
     robot = load()
-    with pytest.raises(gyroflex.ShapeError, match="threshold"):
+    with pytest.raises(gyroflex.ArgumentError, match="argument `threshold`"):
         robot.analyze(threshold=-1.0)
     with pytest.raises(gyroflex.ArgumentError, match="log"):
         robot.analyze(scenario="a.yaml", log="b.mcap")

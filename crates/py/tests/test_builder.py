@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import gyroflex
 import numpy as np
@@ -71,6 +72,64 @@ def test_what_is_built_wrong_is_refused() -> None:
         gyroflex.Robot.from_builder(gyroflex.RobotBuilder("arm").link("base").joint("joint", "base", "nobody"))
     with pytest.raises(gyroflex.Error, match="nobody"):
         gyroflex.Robot.from_builder(builder().drive("nobody", ratio=1, rotor={"inertia": 1e-4}))
+
+
+def links() -> gyroflex.RobotBuilder:
+    return gyroflex.RobotBuilder("arm").link("base").link("upper", mass=1, inertia=(1, 1, 1))
+
+
+@pytest.mark.parametrize(
+    ("joint", "words"),
+    [
+        ({"lower": -1, "upper": 1}, "argument `lower`: a continuous joint"),
+        ({"kind": "fixed", "velocity": 1}, "argument `velocity`: a fixed joint"),
+        ({"kind": "revolute", "lower": -1}, "argument `upper`: it is missing"),
+        ({"kind": "prismatic", "lower": 2, "upper": 1}, "argument `lower`: 2.0 is above"),
+        ({"kind": "ball"}, "argument `kind`: 'ball'.*\n.*revolute, continuous"),
+        ({"axis": "xyz"}, "argument `axis`"),
+        ({"upper": 10**400}, "argument `upper`: it is too large"),
+    ],
+)
+def test_limits_that_no_joint_would_have_are_refused(joint: dict[str, Any], words: str) -> None:
+    with pytest.raises(gyroflex.ArgumentError, match=words):
+        links().joint("joint", "base", "upper", **joint)
+
+
+def test_limits_left_out_are_none() -> None:
+    # A URDF without them has limits of zero, which would leave the joint no range at all.
+    peaks = []
+    for limits in ({}, {"effort": 5, "velocity": 2}, {"lower": -0.1, "upper": 0.1}):
+        arm = gyroflex.RobotBuilder("arm").link("base").link("upper", mass=1, com=(0, 1, 0), inertia=(1, 1, 1))
+        robot = gyroflex.Robot.from_builder(arm.joint("joint", "base", "upper", kind="revolute", axis=(1, 0, 0), **limits))  # type: ignore[arg-type]
+        assert robot.warnings == []
+        (joint,) = robot.analyze(samples=8, speed=1.0)["joints"]
+        peaks.append(joint["tau_j"]["rms"])
+    assert peaks[0] == peaks[1] != peaks[2]
+
+
+def test_inertia_without_mass_is_refused() -> None:
+    for given in ({"inertia": (1, 1, 1)}, {"com": (0, 0, 1)}):
+        with pytest.raises(gyroflex.ArgumentError, match="argument `mass`: it is missing"):
+            gyroflex.RobotBuilder("arm").link("base", **given)  # type: ignore[arg-type]
+
+
+def test_texts_are_named_as_such() -> None:
+    with pytest.raises(gyroflex.FormatError, match="^the URDF text:10: joint `joint`.*`nobody`"):
+        gyroflex.Robot.from_builder(links().joint("joint", "base", "nobody"))
+    with pytest.raises(gyroflex.ModelError, match="^the YAML text:7: joint `shoulder`, gear_ratio"):
+        gyroflex.Robot.from_urdf(URDF, YAML.replace("gear_ratio: 100.0", "gear_ratio: 0"))
+    robots = [gyroflex.Robot.from_urdf(URDF, YAML), gyroflex.Robot.from_urdf(URDF, set={"gravity": [0, 0, -1.62]})]
+    for robot in robots:
+        assert "gyroflex codegen ROBOT --model" in robot.codegen("gravity").files["elastic_arm.py"]
+    assert gyroflex.Robot.from_urdf(URDF.replace(' name="elastic_arm"', "")).name == "robot"
+
+
+def test_what_is_no_builder_is_refused() -> None:
+    with pytest.raises(gyroflex.ArgumentError, match="argument `builder`: it is of type `str`\n.*RobotBuilder"):
+        gyroflex.Robot.from_builder("x")  # type: ignore[arg-type]
+    arm = links().joint("joint", "base", "upper").drive("joint", ratio=2, rotor={"inertia": float("nan")})
+    with pytest.raises(gyroflex.ArgumentError, match=r"argument `drives`: `drives\.joint\.rotor\.inertia`: NaN is not a finite"):
+        gyroflex.Robot.from_builder(arm)
 
 
 def test_drives_built_wrong_are_refused() -> None:

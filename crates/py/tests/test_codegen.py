@@ -74,7 +74,7 @@ def test_weighing_and_splitting_are_reported(puma: gyroflex.Robot) -> None:
         ({"scalar": "f16"}, "f64"),
         ({"keep_symbol": ["link9.mass"]}, "link9"),
         ({"along": "track.yaml"}, "simplify_to"),
-        ({"split": 2}, "--lang rust"),
+        ({"split": 2}, 'lang="rust"'),
         ({"link": "nobody", "what": "jacobian"}, "nobody"),
     ],
 )
@@ -83,6 +83,39 @@ def test_what_cannot_be_generated_is_refused(puma: gyroflex.Robot, arguments: di
         arguments = {"along": ROBOTS / "puma560" / "track.yaml"}
     with pytest.raises(gyroflex.Error, match=words.replace("-", "[-]")):
         puma.codegen(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("argument", "value", "words"),
+    [
+        ("what", "forwards", "nothing is called `forwards`"),
+        ("what", ["all", 5], "list of names"),
+        ("keep_symbol", "gravity", "the text 'gravity' is given\n.*list of names"),
+        ("split", 2, 'choose `lang="rust"`'),
+        ("split", -1, "it is negative"),
+        ("lanes", 10**30, "smaller number"),
+        ("simplify_to", float("nan"), "part of a torque"),
+        ("simplify_to", 10**400, "too large"),
+        ("link", "nobody", "there is no link `nobody`"),
+        ("name", "a b", "letters, digits"),
+    ],
+)
+def test_errors_name_arguments_and_not_options(puma: gyroflex.Robot, argument: str, value: object, words: str) -> None:
+    with pytest.raises(gyroflex.ArgumentError, match=words) as caught:
+        puma.codegen(**{argument: value})  # type: ignore[arg-type]
+    assert caught.value.element == f"argument `{argument}`"
+    assert "--" not in str(caught.value)
+
+
+def test_more_parts_than_processors_are_refused(puma: gyroflex.Robot) -> None:
+    for argument in ("split", "lanes"):
+        with pytest.raises(gyroflex.ArgumentError, match=f"argument `{argument}`: no "):
+            puma.codegen(lang="rust", **{argument: 10**6})  # type: ignore[arg-type]
+
+
+def test_a_urdf_with_keys_is_made_again_from_its_own_file(arm_file: Path) -> None:
+    robot = gyroflex.Robot.load(arm_file.parent / "elastic_arm.urdf", set={"gravity": [0, 0, -1.62]})
+    assert "gyroflex codegen elastic_arm.urdf --model" in robot.codegen("gravity").files["elastic_arm.py"]
 
 
 def test_only_python_is_a_module(puma: gyroflex.Robot) -> None:

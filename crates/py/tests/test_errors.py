@@ -45,7 +45,7 @@ def test_a_wrong_shape_is_named_with_the_expected_one(arm: gyroflex.Robot, name:
         arm.forward_dynamics(**arguments)  # type: ignore[arg-type]
     assert isinstance(caught.value, ValueError)
     assert caught.value.element == f"argument `{name}`"
-    assert f"shape {given} is given, but (3,) is expected" in caught.value.problem
+    assert f"shape {given} is given, but (3,) or (batch, 3) is expected" in caught.value.problem
     assert caught.value.remedy
 
 
@@ -132,3 +132,68 @@ def test_what_a_file_has_in_vain_is_a_warning(arm_file: Path, tmp_path: Path) ->
     with pytest.warns(gyroflex.RobotWarning, match="stiction"):
         robot = gyroflex.Robot.load(tmp_path / "robot.urdf")
     assert any("stiction" in warning for warning in robot.warnings)
+
+
+def test_one_remedy_for_an_array_that_is_missing(arm: gyroflex.Robot) -> None:
+    many = np.zeros((2, 3))
+    for q in (Z, many):
+        for missing, remedy in (("tau", "motor torques, zeros for none"), ("thetad", "or choose a model with rigid transmissions")):
+            given = {"theta": Z, "thetad": Z, "tau": Z} | {missing: None}
+            with pytest.raises(gyroflex.ArgumentError, match=f"argument `{missing}`: it is missing") as caught:
+                arm.forward_dynamics(q, Z, **given)
+            assert remedy in caught.value.remedy
+
+
+def test_a_batch_is_offered_where_there_is_one(arm: gyroflex.Robot) -> None:
+    for call in (arm.mass_matrix, arm.gravity_torques):
+        with pytest.raises(gyroflex.ShapeError, match=r"but \(3,\) or \(batch, 3\) is expected"):
+            call(np.zeros(4))
+    with pytest.raises(gyroflex.ShapeError, match=r"but \(3,\) is expected"):
+        arm.linearize(np.zeros(4))
+
+
+def test_roots_may_be_left_out_and_messages_say_so(arm_file: Path) -> None:
+    robot = gyroflex.Robot.load(arm_file, floating=True)
+    q, qd = np.zeros(10), np.zeros(9)
+    q[6] = 1.0
+    with pytest.raises(gyroflex.ShapeError) as caught:
+        robot.forward_dynamics(q, qd, np.zeros(4), qd, qd)
+    assert "(9,) or (batch, 9), or without the root (3,) or (batch, 3), is expected" in caught.value.problem
+
+
+def test_each_argument_is_blamed_for_itself(arm: gyroflex.Robot) -> None:
+    wrong = [
+        ("threshold", 2.0),
+        ("threshold", np.nan),
+        ("point", (0, 0)),
+        ("point", "abc"),
+        ("point", (0, 0, np.nan)),
+        ("directions", "x"),
+        ("directions", []),
+        ("directions", ["x", "x"]),
+        ("rotation", "xyz"),
+    ]
+    for name, value in wrong:
+        with pytest.raises(gyroflex.ArgumentError, match=f"argument `{name}`"):
+            arm.operational_space("tool", Z, Z, Z, **{name: value})  # type: ignore[arg-type]
+    for name, value in (("samples", -1), ("samples", 10**12), ("seed", -1), ("speed", 10**400), ("rise", 0.0), ("threshold", np.inf)):
+        with pytest.raises(gyroflex.ArgumentError, match=f"argument `{name}`"):
+            arm.analyze(**{name: value})  # type: ignore[arg-type]
+    changes = [("stiffness", {"elbow": np.nan}), ("ratio", {5: 1.0}), ("friction", {"elbow": {"motor": {1: 2}}}), ("gravity", (0, 0)), ("payload", {"mass": np.inf})]
+    for name, value in changes:
+        with pytest.raises(gyroflex.ArgumentError, match=f"argument `{name}`"):
+            arm.with_(**{name: value})  # type: ignore[arg-type]
+
+
+def test_the_last_word_counts_in_a_copy(arm: gyroflex.Robot) -> None:
+    key = "drives.elbow.transmission.stiffness"
+    assert arm.with_(stiffness={"elbow": 1e3}, set={key: 2e3}).drives["elbow"].stiffness == 2e3
+    assert arm.with_(gravity=(0, 0, -1.62), model="rigid").with_(set={"model": "reduced"}).model == "reduced"
+
+
+def test_files_with_blanks_in_their_names_are_named_whole(arm_file: Path, tmp_path: Path) -> None:
+    (tmp_path / "elastic_arm.urdf").write_text((arm_file.parent / "elastic_arm.urdf").read_text())
+    path = tmp_path / "my robot, the arm.yaml"
+    path.write_text(arm_file.read_text().replace("gear_ratio: 100.0", "gear_ratio: 0"))
+    with pytest.raises(gyroflex.ModelError, match=r"^my robot, the arm\.yaml:7: joint `shoulder`"):
+        gyroflex.Robot.load(path)

@@ -198,3 +198,36 @@ def test_arguments_without_meaning_are_named(arm: gyroflex.Robot) -> None:
         arm.elastic_inverse(q, derivatives)
     with pytest.raises(gyroflex.ModelError, match="coefficients"):
         arm.elastic_inverse(q, np.zeros((8, 3)), torque_derivatives=100)
+
+
+def test_messages_over_time_name_the_time(arm: gyroflex.Robot) -> None:
+    order = max(arm.smoothness().values())
+
+    def spoiled(shape: tuple[int, ...], value: float) -> np.ndarray:
+        array = np.zeros(shape)
+        array[2] = value
+        return array
+
+    right = {"q": np.zeros((4, 3)), "derivatives": np.zeros((4, order, 3))}
+    for name, shape in (("q", (4, 3)), ("derivatives", (4, order, 3)), ("tau_ext", (4, 3)), ("tau_ext", (4, 2, 3))):
+        with pytest.raises(gyroflex.NotFiniteError, match=rf"argument `{name}\[2\]`, entry "):
+            arm.elastic_inverse(**(right | {name: spoiled(shape, np.nan)}), step=1e-3)
+    with pytest.raises(gyroflex.DivergedError, match="joint `.*`: at time 2: "):
+        arm.elastic_inverse(right["q"], spoiled((4, order, 3), 1e200), step=1e-3)
+    with pytest.raises(gyroflex.ShapeError, match=rf"shape \(4, {order}, 3\)"):
+        arm.elastic_inverse(right["q"], np.zeros((4, 1, 3)), step=1e-3)
+    with pytest.raises(gyroflex.ShapeError, match=r"\(3,\) or \(times, 3\) is expected"):
+        arm.elastic_inverse(np.zeros(4), np.zeros((order, 3)))
+
+
+def test_more_derivatives_than_are_counted_are_refused(arm: gyroflex.Robot) -> None:
+    fewest = min(arm.smoothness(torque_derivatives=100).values())
+    assert fewest >= 100
+    for many in (250, 255, 300, 10**30, -1):
+        if many == 250:
+            assert max(arm.smoothness(torque_derivatives=many).values()) < 255
+            continue
+        with pytest.raises(gyroflex.ArgumentError, match="argument `torque_derivatives`"):
+            arm.smoothness(torque_derivatives=many)
+        with pytest.raises(gyroflex.ArgumentError, match="argument `torque_derivatives`"):
+            arm.elastic_inverse(np.zeros(3), np.zeros((8, 3)), torque_derivatives=many)

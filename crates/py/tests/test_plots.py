@@ -142,3 +142,33 @@ def test_sticks_meet_at_the_origins_of_links(robot: str) -> None:
     origins = np.array([loaded.placement(link, q)[:3, 3] for link in loaded.link_names])
     for start, _ in sticks:
         assert np.abs(origins - start).max(axis=1).min() < 1e-12
+
+
+def test_what_cannot_be_drawn_is_refused_by_name(arm: gyroflex.Robot, result: gyroflex.SimulationResult, tmp_path: Path) -> None:
+    response = arm.frequency_response("elbow", points=5)
+    chart, film, run = plots.significance_map, plots.animate, result.plot
+    refused = [
+        ("panels", lambda: run("position")),
+        ("panels", lambda: run([])),
+        ("joints", lambda: run(joints="elbow")),
+        ("result", lambda: plots.run(arm)),
+        ("responses", lambda: plots.frequency_response(5)),
+        ("responses", lambda: plots.frequency_response([])),
+        ("labels", lambda: plots.frequency_response([response] * 2, labels="ab")),
+        ("y", lambda: chart(arm, "elbow", "elbow")),
+        ("q", lambda: chart(arm, "elbow", "extend", q=[0.0])),
+        ("points", lambda: chart(arm, "elbow", "extend", points=1)),
+        ("points", lambda: chart(arm, "elbow", "extend", points=10**9)),
+        ("x_range", lambda: chart(arm, "elbow", "extend", x_range=(1, 0))),
+        ("fps", lambda: film(arm, result, fps=0)),
+        ("speed", lambda: film(arm, result, speed=-1.0)),
+        ("speed", lambda: film(arm, result, speed=1e-9)),
+        ("times", lambda: film(arm, result, times=(0, np.nan))),
+        ("view", lambda: film(arm, result, view=(20,))),
+    ]
+    for argument, draw in refused:
+        with pytest.raises(gyroflex.ArgumentError) as caught:
+            draw()  # type: ignore[no-untyped-call]
+        assert caught.value.element == f"argument `{argument}`"
+    with pytest.raises(gyroflex.FileError, match="folder"):
+        film(arm, result, tmp_path / "nowhere" / "arm.gif")

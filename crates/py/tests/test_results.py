@@ -124,4 +124,4 @@ def test_a_missing_extra_is_named(arm_file: Path) -> None:
         "except gyroflex.MissingExtraError as e:\n    print(e.remedy)\n"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "run `pip install gyroflex[pandas]`"
+    assert done.stdout.strip() == 'run `pip install "./crates/py[pandas]"` in the repository of gyroflex'

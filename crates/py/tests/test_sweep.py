@@ -248,3 +248,36 @@ def test_a_call_that_ran_nothing_leaves_nothing_in_the_way(path: Path, tmp_path:
     assert sweep(path, {STIFFNESS: [3e3]}, output=output)["error"].tolist() == [""]
     with pytest.raises(gyroflex.FileError, match="folder"):
         sweep(path, output=tmp_path / "nowhere" / "runs.csv")
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [
+        ("values", {5: [1.0]}),
+        ("values", {STIFFNESS: [float("nan")]}),
+        ("values", [{STIFFNESS: object()}]),
+        ("values", 5),
+        ("values", {STIFFNESS: np.array(3e3)}),
+        ("n_jobs", 1.5),
+        ("n_jobs", "2"),
+        ("measure", 5),
+        ("client", "scheduler:8786"),
+        ("progress", np.zeros(2)),
+        ("output", "a\0b.csv"),
+    ],
+)
+def test_each_argument_is_blamed_for_itself(path: Path, argument: str, value: Any) -> None:
+    with pytest.raises(gyroflex.ArgumentError) as caught:
+        gyroflex.sweep(**{"scenario": path, "values": {STIFFNESS: [3e3]}, argument: value})  # type: ignore[arg-type]
+    assert caught.value.element == f"argument `{argument}`"
+
+
+def test_outputs_that_cannot_be_written_are_told_before_anything_runs(path: Path, tmp_path: Path) -> None:
+    def never(_: gyroflex.SimulationResult) -> dict[str, Any]:
+        raise AssertionError
+
+    (tmp_path / "folder.csv").mkdir()
+    (tmp_path / "kept.csv.journal").mkdir()
+    for name in ("folder.csv", "kept.csv"):
+        with pytest.raises(gyroflex.FileError, match=name):
+            sweep(path, output=tmp_path / name, overwrite=True, measure=never)

@@ -46,3 +46,20 @@ def test_example_of_pictures_runs(arm_file: Path, tmp_path: Path) -> None:
     finally:
         plt.close("all")
     assert {path.name for path in tmp_path.iterdir()} == {"run.mcap", "run.png", "run.gif"}
+
+
+def test_float32_is_told_from_float64(tmp_path: Path) -> None:
+    program = tmp_path / "precision.py"
+    program.write_text(
+        "import gyroflex\n"
+        "import numpy as np\n"
+        "from numpy.typing import NDArray\n"
+        "from typing_extensions import assert_type\n\n\n"
+        "def both(robot: gyroflex.Robot, q: NDArray[np.float64], s: NDArray[np.float32]) -> None:\n"
+        "    assert_type(robot.mass_matrix(q), NDArray[np.float64])\n"
+        "    assert_type(robot.mass_matrix(s, out=s), NDArray[np.float32])\n"
+        "    assert_type(robot.bias(s, s, s), tuple[NDArray[np.float32], NDArray[np.float32]])\n"
+        "    assert_type(robot.bias(s, q, s), tuple[NDArray[np.float64], NDArray[np.float64]])\n"
+        "    assert_type(robot.gravity_torques([0.0, 1.0]), NDArray[np.float64])\n"
+    )
+    run("mypy", "--strict", program)

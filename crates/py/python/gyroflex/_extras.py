@@ -9,9 +9,10 @@ from .errors import MissingExtraError
 
 
 def extra(module: str, name: str) -> Any:
-    """Imports a module of the optional dependencies `gyroflex[name]`."""
+    """Imports a module of the optional dependencies `name` of the wheel."""
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        problem, remedy = f"{module.partition('.')[0]} cannot be imported: {error}", f"run `pip install gyroflex[{name}]`"
+        problem = f"{module.partition('.')[0]} cannot be imported: {error}"
+        remedy = f'run `pip install "./crates/py[{name}]"` in the repository of gyroflex'
         raise MissingExtraError(problem, "", "", remedy) from error

@@ -1,10 +1,10 @@
 """The compiled half of the package; `gyroflex` exports what users need of it."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -59,28 +59,32 @@ _Direction: TypeAlias = Literal["rx", "ry", "rz", "x", "y", "z"]
 _Point: TypeAlias = tuple[float, float, float]
 _Vector: TypeAlias = NDArray[np.float64]
 _Matrix: TypeAlias = NDArray[np.float64]
+_Single: TypeAlias = NDArray[np.float32]
 _Blocks: TypeAlias = NDArray[np.float64]
 _Complexes: TypeAlias = NDArray[np.complex128]
 
 @final
 class Linearization:
-    """A linear model `x' = A x + B u, y = C x + D u`, or, sampled, `x[k+1] = A x[k] + B u[k]`; all are deviations."""
+    """A linear model `x' = A x + B u, y = C x + D u`, or, sampled, `x[k+1] = A x[k] + B u[k]`; all are deviations.
+
+    Of a batch of operating points it is all of their models: arrays lead with the batch, and entries are one model each.
+    """
 
     @property
     def A(self) -> NDArray[np.float64]:
-        """`A`, shape `(states, states)`."""
+        """`A`, shape `([batch,] states, states)`."""
 
     @property
     def B(self) -> NDArray[np.float64]:
-        """`B`, shape `(states, inputs)`."""
+        """`B`, shape `([batch,] states, inputs)`."""
 
     @property
     def C(self) -> NDArray[np.float64]:
-        """`C`, shape `(outputs, states)`."""
+        """`C`, shape `([batch,] outputs, states)`."""
 
     @property
     def D(self) -> NDArray[np.float64]:
-        """`D`, shape `(outputs, inputs)`."""
+        """`D`, shape `([batch,] outputs, inputs)`."""
 
     @property
     def states(self) -> list[str]:
@@ -96,33 +100,40 @@ class Linearization:
 
     @property
     def q(self) -> _Vector:
-        """Joint positions at the operating point, shape `(nq,)`."""
+        """Joint positions at the operating point, shape `([batch,] nq,)`."""
 
     @property
     def qd(self) -> _Vector:
-        """Joint velocities there, shape `(nv,)`."""
+        """Joint velocities there, shape `([batch,] nv,)`."""
 
     @property
     def theta(self) -> _Vector:
-        """Motor positions there, seen from the link side, shape `(nv,)`."""
+        """Motor positions there, seen from the link side, shape `([batch,] nv,)`."""
 
     @property
     def thetad(self) -> _Vector:
-        """Motor velocities there, seen from the link side, shape `(nv,)`."""
+        """Motor velocities there, seen from the link side, shape `([batch,] nv,)`."""
 
     @property
     def tau(self) -> _Vector:
-        """Motor torques there, seen from the link side, shape `(nv,)`."""
+        """Motor torques there, seen from the link side, shape `([batch,] nv,)`."""
 
     @property
     def step(self) -> float | None:
         """Sampling time [s]; `None` in continuous time."""
 
+    @property
+    def eigenvalues(self) -> _Complexes:
+        """Eigenvalues of `A`, by size, shape `([batch,] states)`."""
+
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int, /) -> Linearization: ...
+    def __iter__(self) -> Iterator[Linearization]: ...
     def zero_order_hold(self, step: float) -> Linearization:
         """The model sampled exactly, with inputs held between samples."""
 
     def modes(self) -> list[Mode]:
-        """The modes of a model in continuous time, from the slowest to the fastest."""
+        """The modes of a model in continuous time, from the slowest to the fastest; not of a batch."""
 
 @final
 class Mode:
@@ -154,7 +165,10 @@ class Mode:
 
 @final
 class FrequencyResponse:
-    """Response of a joint to its own motor; motor quantities are seen from the link side."""
+    """Response of a joint to its own motor; motor quantities are seen from the link side.
+
+    Of a batch of poses it is the responses at all of them: arrays lead with the batch, and entries are one response each.
+    """
 
     @property
     def joint(self) -> str:
@@ -162,23 +176,27 @@ class FrequencyResponse:
 
     @property
     def frequency(self) -> _Vector:
-        """Frequencies [Hz]."""
+        """Frequencies [Hz], shape `([batch,] points)`."""
 
     @property
     def motor(self) -> _Complexes:
-        """Motor position per motor torque at each frequency [rad/(N m), or m/N]."""
+        """Motor position per motor torque at each frequency [rad/(N m), or m/N], shape `([batch,] points)`."""
 
     @property
     def link(self) -> _Complexes:
-        """Link position per motor torque at each frequency [rad/(N m), or m/N]."""
+        """Link position per motor torque at each frequency [rad/(N m), or m/N], shape `([batch,] points)`."""
 
     @property
     def resonances(self) -> _Vector:
-        """Frequencies of the peaks of the motor's response [Hz]."""
+        """Frequencies of the peaks of the motor's response [Hz]; not of a batch."""
 
     @property
     def antiresonances(self) -> _Vector:
-        """Frequencies of the dips of the motor's response [Hz]."""
+        """Frequencies of the dips of the motor's response [Hz]; not of a batch."""
+
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int, /) -> FrequencyResponse: ...
+    def __iter__(self) -> Iterator[FrequencyResponse]: ...
 
 @final
 class GeneratedCode:
@@ -276,15 +294,15 @@ class ConstrainedMotion:
 
     @property
     def qdd(self) -> _Vector:
-        """Accelerations of the joints, shape `(nv,)`."""
+        """Accelerations of the joints, shape `([batch,] nv,)`."""
 
     @property
     def thetadd(self) -> _Vector:
-        """Accelerations of the motors seen from the link side, shape `(nv,)`."""
+        """Accelerations of the motors seen from the link side, shape `([batch,] nv,)`."""
 
     @property
     def tau_j(self) -> _Vector:
-        """Torques that the transmissions exert on the joints, shape `(nv,)` [N m or N]."""
+        """Torques that the transmissions exert on the joints, shape `([batch,] nv,)` [N m or N]."""
 
     @property
     def multipliers(self) -> _Vector:
@@ -292,19 +310,19 @@ class ConstrainedMotion:
 
     @property
     def wrenches(self) -> _Matrix:
-        """Moment and force of each constraint on its link, about its frame's origin in world axes, shape `(constraints, 6)`."""
+        """Moment and force of each constraint on its link, about its frame's origin in world axes, shape `([batch,] constraints, 6)`."""
 
     @property
-    def dependent(self) -> int:
-        """How many directions were left out because others say the same."""
+    def dependent(self) -> Any:
+        """How many directions were left out because others say the same: an `int`, of a batch an array of shape `(batch,)`."""
 
     @property
-    def contradiction(self) -> float:
-        """The largest acceleration that those ask for and do not get."""
+    def contradiction(self) -> Any:
+        """The largest acceleration that those ask for and do not get: a `float`, of a batch an array of shape `(batch,)`."""
 
     @property
-    def independence(self) -> float:
-        """The smallest part of a direction's own mobility that the ones before it leave it, 0 to 1."""
+    def independence(self) -> Any:
+        """The smallest part of a direction's own mobility that the ones before it leave it, 0 to 1: a `float`, of a batch an array of shape `(batch,)`."""
 
 @final
 class ConstrainedTorques:
@@ -312,11 +330,11 @@ class ConstrainedTorques:
 
     @property
     def tau_j(self) -> _Vector:
-        """Torques that the transmissions must exert on the joints, shape `(nv,)` [N m or N]."""
+        """Torques that the transmissions must exert on the joints, shape `([batch,] nv,)` [N m or N]."""
 
     @property
     def tau(self) -> _Vector:
-        """Torques that the motors must exert, seen from the link side, shape `(nv,)` [N m or N]."""
+        """Torques that the motors must exert, seen from the link side, shape `([batch,] nv,)` [N m or N]."""
 
     @property
     def multipliers(self) -> _Vector:
@@ -327,12 +345,12 @@ class ConstrainedTorques:
         """Moment and force of each constraint on its link, as those of `ConstrainedMotion`."""
 
     @property
-    def dependent(self) -> int:
-        """How many directions were left out because others say the same."""
+    def dependent(self) -> Any:
+        """How many directions were left out because others say the same: an `int`, of a batch an array of shape `(batch,)`."""
 
     @property
-    def unborne(self) -> float:
-        """The largest load at a passive joint, or on a floating root, that no constraint bears [N m or N]."""
+    def unborne(self) -> Any:
+        """The largest load at a passive joint, or on a floating root, that no constraint bears [N m or N]: a `float`, of a batch an array of shape `(batch,)`."""
 
 @final
 class Impact:
@@ -340,15 +358,15 @@ class Impact:
 
     @property
     def qd(self) -> _Vector:
-        """Velocities of the joints afterwards, shape `(nv,)`."""
+        """Velocities of the joints afterwards, shape `([batch,] nv,)`."""
 
     @property
     def thetad(self) -> _Vector:
-        """Velocities of the motors afterwards seen from the link side, shape `(nv,)`."""
+        """Velocities of the motors afterwards seen from the link side, shape `([batch,] nv,)`."""
 
     @property
     def gears(self) -> _Vector:
-        """Impulses that rigid gears exert on their joints, shape `(nv,)` [N m s or N s]."""
+        """Impulses that rigid gears exert on their joints, shape `([batch,] nv,)` [N m s or N s]."""
 
     @property
     def multipliers(self) -> _Vector:
@@ -359,20 +377,20 @@ class Impact:
         """Angular and linear impulse of each constraint on its link, as those of `ConstrainedMotion`."""
 
     @property
-    def dependent(self) -> int:
-        """How many directions were left out because others say the same."""
+    def dependent(self) -> Any:
+        """How many directions were left out because others say the same: an `int`, of a batch an array of shape `(batch,)`."""
 
     @property
-    def contradiction(self) -> float:
-        """The largest jump of velocity that those ask for and do not get."""
+    def contradiction(self) -> Any:
+        """The largest jump of velocity that those ask for and do not get: a `float`, of a batch an array of shape `(batch,)`."""
 
     @property
-    def independence(self) -> float:
-        """The smallest part of a direction's own mobility that the ones before it leave it, 0 to 1."""
+    def independence(self) -> Any:
+        """The smallest part of a direction's own mobility that the ones before it leave it, 0 to 1: a `float`, of a batch an array of shape `(batch,)`."""
 
     @property
-    def released(self) -> int:
-        """How many contacts were released because they would have pulled."""
+    def released(self) -> Any:
+        """How many contacts were released because they would have pulled: an `int`, of a batch an array of shape `(batch,)`."""
 
 @final
 class Drive:
@@ -403,7 +421,7 @@ class Robot:
     """A robot with its drives, loaded from files.
 
     Where a method takes `out`, its arrays may also be of shape `(batch, n)`, any of them; results lead with that axis. All in float32
-    gives float32, else float64.
+    gives float32, else float64; derivatives, the regressor, and robots with links that bend are in float64 always.
     """
 
     @staticmethod
@@ -465,6 +483,22 @@ class Robot:
     def warnings(self) -> list[str]:
         """What of the robot's files was ignored or assumed."""
 
+    @overload
+    def forward_dynamics(
+        self,
+        q: _Single,
+        qd: _Single,
+        theta: _Single | None = None,
+        thetad: _Single | None = None,
+        tau: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        tau_ext: _Single | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def forward_dynamics(
         self,
         q: ArrayLike,
@@ -479,6 +513,23 @@ class Robot:
     ) -> tuple[_Vector, _Vector]:
         """Accelerations `(qdd, thetadd)` of links and motors, shape `(nv,)` each."""
 
+    @overload
+    def inverse_dynamics(
+        self,
+        q: _Single,
+        qd: _Single,
+        qdd: _Single,
+        theta: _Single | None = None,
+        thetad: _Single | None = None,
+        thetadd: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        tau_ext: _Single | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def inverse_dynamics(
         self,
         q: ArrayLike,
@@ -494,19 +545,44 @@ class Robot:
     ) -> tuple[_Vector, _Vector]:
         """Torques `(tau_j, tau)` of transmissions and motors that a motion asks for, shape `(nv,)` each [N m or N]."""
 
-    def mass_matrix(
-        self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None
-    ) -> NDArray[np.float64]:
+    @overload
+    def mass_matrix(self, q: _Single, *, model: _Model | None = None, out: _Single | None = None) -> _Single:
+        """The same in float32."""
+
+    @overload
+    def mass_matrix(self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None) -> _Matrix:
         """Inertia matrix `M(q)` of the link side, shape `(nv, nv)`."""
 
-    def coupling_matrix(
-        self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None
-    ) -> NDArray[np.float64]:
+    @overload
+    def coupling_matrix(self, q: _Single, *, model: _Model | None = None, out: _Single | None = None) -> _Single:
+        """The same in float32."""
+
+    @overload
+    def coupling_matrix(self, q: ArrayLike, *, model: _Model | None = None, out: _Matrix | None = None) -> _Matrix:
         """Inertial coupling `S(q)` of links (rows) and motors (columns), shape `(nv, nv)`."""
 
-    def placement(self, frame: str, q: ArrayLike, *, out: _Matrix | None = None) -> NDArray[np.float64]:
+    @overload
+    def placement(self, frame: str, q: _Single, *, out: _Single | None = None) -> _Single:
+        """The same in float32."""
+
+    @overload
+    def placement(self, frame: str, q: ArrayLike, *, out: _Matrix | None = None) -> _Matrix:
         """Pose of a link in the world, shape `(4, 4)`."""
 
+    @overload
+    def energy(
+        self,
+        q: _Single,
+        qd: _Single,
+        theta: _Single | None = None,
+        thetad: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def energy(
         self,
         q: ArrayLike,
@@ -517,8 +593,20 @@ class Robot:
         model: _Model | None = None,
         out: Sequence[_Vector] | None = None,
     ) -> tuple[Any, Any, Any]:
-        """Energies `(kinetic, gravity, elastic)` [J]: numbers of one state, arrays of shape `(batch,)` of many."""
+        """Energies `(kinetic, gravity, elastic)` [J]: numbers of one state, arrays of shape `(batch,)` of many, `()` with `out`."""
 
+    @overload
+    def jacobian(
+        self,
+        frame: str,
+        q: _Single,
+        *,
+        axes: Literal["world", "local"] = "world",
+        out: _Single | None = None,
+    ) -> _Single:
+        """The same in float32."""
+
+    @overload
     def jacobian(
         self,
         frame: str,
@@ -529,6 +617,23 @@ class Robot:
     ) -> _Matrix:
         """Jacobian of a link's frame, shape `(6, nv)` or `(batch, 6, nv)`, angular rows first."""
 
+    @overload
+    def rollout(
+        self,
+        q0: _Single,
+        qd0: _Single,
+        tau: _Single,
+        dt: float,
+        *,
+        theta0: _Single | None = None,
+        thetad0: _Single | None = None,
+        steps: int | None = None,
+        integrator: Literal["semi_implicit_euler", "rk4"] = "semi_implicit_euler",
+        model: _Model | None = None,
+    ) -> tuple[_Single, _Single, _Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def rollout(
         self,
         q0: ArrayLike,
@@ -542,7 +647,7 @@ class Robot:
         integrator: Literal["semi_implicit_euler", "rk4"] = "semi_implicit_euler",
         model: _Model | None = None,
     ) -> tuple[_Blocks, _Blocks, _Blocks, _Blocks]:
-        """States `(q, qd, theta, thetad)` of many motions with fixed steps of `dt` [s], shape `(batch, steps + 1, n)` each."""
+        """States `(q, qd, theta, thetad)` of many motions with fixed steps of `dt` [s], shape `(batch, steps + 1, n)` each, or `(steps + 1, n)` of one."""
 
     @property
     def drives(self) -> dict[str, Drive]:
@@ -578,12 +683,25 @@ class Robot:
         rotor_inertia: Mapping[str, float] | None = None,
         friction: Mapping[str, Mapping[str, Any]] | None = None,
         model: _Model | None = None,
-        gravity: Sequence[float] | None = None,
+        gravity: ArrayLike | None = None,
         payload: Mapping[str, Any] | None = None,
         set: Mapping[str, Any] | None = None,
     ) -> Robot:
         """A copy of the robot with other numbers, validated: of drives by the names of their joints, or of any key of its YAML."""
 
+    @overload
+    def coriolis_matrices(
+        self,
+        q: _Single,
+        qd: _Single,
+        thetad: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def coriolis_matrices(
         self,
         q: ArrayLike,
@@ -595,6 +713,18 @@ class Robot:
     ) -> tuple[_Matrix, _Matrix, _Matrix]:
         """Blocks `(C, C1, C2)` of the Coriolis matrix in Christoffel form, shape `(nv, nv)` each."""
 
+    @overload
+    def inertia_rates(
+        self,
+        q: _Single,
+        qd: _Single,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def inertia_rates(
         self,
         q: ArrayLike,
@@ -605,6 +735,19 @@ class Robot:
     ) -> tuple[_Matrix, _Matrix]:
         """Time derivatives of `mass_matrix` and `coupling_matrix` along a motion, shape `(nv, nv)` each."""
 
+    @overload
+    def bias(
+        self,
+        q: _Single,
+        qd: _Single,
+        thetad: _Single | None = None,
+        *,
+        model: _Model | None = None,
+        out: Sequence[_Single] | None = None,
+    ) -> tuple[_Single, _Single]:
+        """The same in float32."""
+
+    @overload
     def bias(
         self,
         q: ArrayLike,
@@ -616,6 +759,11 @@ class Robot:
     ) -> tuple[_Vector, _Vector]:
         """What links and motors need at zero acceleration, beside friction, springs and loads, shape `(nv,)` each."""
 
+    @overload
+    def gravity_torques(self, q: _Single, *, out: _Single | None = None) -> _Single:
+        """The same in float32."""
+
+    @overload
     def gravity_torques(self, q: ArrayLike, *, out: _Matrix | None = None) -> _Vector:
         """Generalised forces that hold the links against gravity, shape `(nv,)`."""
 
@@ -629,7 +777,7 @@ class Robot:
         *,
         model: _Model | None = None,
         tau_ext: ArrayLike | None = None,
-        out: tuple[_Blocks, _Blocks] | None = None,
+        out: Sequence[_Blocks] | None = None,
     ) -> tuple[_Blocks, _Blocks]:
         """Derivatives of `qdd` and `thetadd` by `q, qd, theta, thetad, tau`, shape `(5, nv, nv)` or `(batch, 5, nv, nv)` each."""
 
@@ -644,7 +792,7 @@ class Robot:
         *,
         model: _Model | None = None,
         tau_ext: ArrayLike | None = None,
-        out: tuple[_Blocks, _Blocks] | None = None,
+        out: Sequence[_Blocks] | None = None,
     ) -> tuple[_Blocks, _Blocks]:
         """Derivatives of `tau_j` and `tau` by `q, qd, qdd, theta, thetad, thetadd`, shape `(6, nv, nv)` or `(batch, 6, nv, nv)` each."""
 
@@ -658,7 +806,7 @@ class Robot:
         thetadd: ArrayLike | None = None,
         *,
         model: _Model | None = None,
-        out: tuple[_Matrix, _Matrix, _Matrix] | None = None,
+        out: Sequence[_Matrix] | None = None,
     ) -> tuple[_Matrix, _Matrix, _Matrix]:
         """Matrices of links, transmissions and motors that `parameters` enter linearly, shape `(nv, 20 bodies)` each; or batches."""
 
@@ -672,9 +820,9 @@ class Robot:
         qd: ArrayLike,
         thetad: ArrayLike | None = None,
         *,
-        directions: list[_Direction] | None = None,
+        directions: Sequence[_Direction] | None = None,
         rotation: Literal["geometric", "rpy", "zyz"] = "geometric",
-        point: tuple[float, float, float] | None = None,
+        point: ArrayLike | None = None,
         threshold: float = 1e-6,
         model: _Model | None = None,
     ) -> dict[str, Any]:
@@ -736,9 +884,9 @@ class Robot:
         """Velocities after everything in `constraints` is caught at once, and the impulses of it."""
 
     def constraint_motion(
-        self, q: ArrayLike, qd: ArrayLike, *, constraints: Sequence[Constraint]
+        self, q: ArrayLike, qd: ArrayLike, *, constraints: Sequence[Constraint], out: Sequence[NDArray[np.float64]] | None = None
     ) -> tuple[_Vector, _Vector, _Matrix]:
-        """Errors of position and of velocity of constraints, shape `(m,)`, and their Jacobian, shape `(m, nv)`."""
+        """Errors of position and of velocity of constraints, shape `([batch,] m)`, and their Jacobian, shape `([batch,] m, nv)`."""
 
     def smoothness(
         self, model: _Model | None = None, torque_derivatives: int = 0, *, damping: float | None = None
@@ -757,7 +905,11 @@ class Robot:
         torque_derivatives: int = 0,
         damping: float | None = None,
     ) -> ElasticInverse:
-        """Motions and torques of the motors that make the links move as asked; `derivatives` has shape `(order, nv)`."""
+        """Motions and torques of the motors that make the links move as asked, at one moment or over time.
+
+        `q` has shape `(nq,)` or `(times, nq)`, `derivatives` `(order, nv)` or `(times, order, nv)`, `tau_ext` `(nv,)`, or with its time
+        derivatives `(rows, nv)`, or over time `(times, nv)` or `(times, rows, nv)`.
+        """
 
     def linearize(
         self,

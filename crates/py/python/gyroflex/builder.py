@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 from xml.etree import ElementTree
 
-from .errors import ArgumentError, NotFiniteError, ShapeError
+from . import _checks
+from .errors import ArgumentError
+
+KINDS = ("revolute", "continuous", "prismatic", "fixed")
 
 __all__ = ["RobotBuilder"]
 
@@ -26,7 +28,7 @@ class RobotBuilder:
     """
 
     def __init__(self, name: str) -> None:
-        self.name = name
+        self.name = _checks.name("name", name)
         #: Drives by the names of their joints, as in a robot's YAML.
         self.drives: dict[str, dict[str, Any]] = {}
         self._links: list[ElementTree.Element] = []
@@ -54,18 +56,18 @@ class RobotBuilder:
         inertia
             About the centre of mass: ``(xx, yy, zz)`` or ``(xx, yy, zz, xy, xz, yz)`` [kg m²].
         """
-        link = ElementTree.Element("link", name=name)
+        link = ElementTree.Element("link", name=_checks.name("name", name))
+        origin = {"xyz": _triple("com", com), "rpy": _triple("rpy", rpy)}
+        entries = [*_checks.numbers("inertia", inertia, 3, 6), 0.0, 0.0, 0.0][:6]
         if mass is not None:
             inertial = ElementTree.SubElement(link, "inertial")
-            ElementTree.SubElement(inertial, "origin", xyz=_words(com, 3, "com"), rpy=_words(rpy, 3, "rpy"))
-            ElementTree.SubElement(inertial, "mass", value=_words([mass], 1, "mass"))
-            if len(inertia) not in (3, 6) or any(isinstance(x, Sequence) or getattr(x, "ndim", 0) for x in inertia):
-                problem = f"{len(inertia)} entries are given"
-                raise ShapeError(problem, "argument `inertia`", "", "give xx, yy, zz, or these and xy, xz, yz")
-            entries = [*inertia, 0, 0, 0][:6]
+            ElementTree.SubElement(inertial, "origin", origin)
+            ElementTree.SubElement(inertial, "mass", value=_word("mass", mass))
             names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-            numbers = {of: _words([x], 1, "inertia") for of, x in zip(names, entries, strict=True)}
-            ElementTree.SubElement(inertial, "inertia", numbers)
+            ElementTree.SubElement(inertial, "inertia", {of: repr(x) for of, x in zip(names, entries, strict=True)})
+        elif any(entries) or any(_checks.numbers("com", com, 3)):
+            # They would be ignored without a word.
+            raise _checks.refused("mass", "it is missing, but `inertia` or `com` is given", "give the mass, or leave them out")
         self._links.append(link)
         return self
 
@@ -97,18 +99,24 @@ class RobotBuilder:
         axis
             The joint's axis in the child's frame.
         lower, upper, effort, velocity
-            Limits [rad or m, N m or N, per s]; those left out are none.
+            Limits [rad or m, N m or N, per s]; those left out are none. ``lower`` and ``upper`` are given both or not at all.
         """
-        joint = ElementTree.Element("joint", name=name, type=kind)
-        ElementTree.SubElement(joint, "parent", link=parent)
-        ElementTree.SubElement(joint, "child", link=child)
-        ElementTree.SubElement(joint, "origin", xyz=_words(xyz, 3, "xyz"), rpy=_words(rpy, 3, "rpy"))
+        if not isinstance(kind, str) or kind not in KINDS:
+            raise _checks.refused("kind", f"{_checks.shown(kind)} is no kind of joint", f"give one of {', '.join(KINDS)}")
+        joint = ElementTree.Element("joint", name=_checks.name("name", name), type=kind)
+        ElementTree.SubElement(joint, "parent", link=_checks.name("parent", parent))
+        ElementTree.SubElement(joint, "child", link=_checks.name("child", child))
+        ElementTree.SubElement(joint, "origin", xyz=_triple("xyz", xyz), rpy=_triple("rpy", rpy))
+        direction = _triple("axis", axis)
         if kind != "fixed":
-            ElementTree.SubElement(joint, "axis", xyz=_words(axis, 3, "axis"))
+            ElementTree.SubElement(joint, "axis", xyz=direction)
         limits = {"lower": lower, "upper": upper, "effort": effort, "velocity": velocity}
-        given = {key: _words([value], 1, key) for key, value in limits.items() if value is not None}
+        given = {key: _word(key, value) for key, value in limits.items() if value is not None}
+        _check_limits(kind, given)
         if given:
-            ElementTree.SubElement(joint, "limit", given)
+            # What a URDF leaves out is a limit of zero.
+            unlimited = {"lower": "-inf", "upper": "inf"} if kind != "continuous" else {}
+            ElementTree.SubElement(joint, "limit", unlimited | given)
         self._joints.append(joint)
         return self
 
@@ -139,17 +147,17 @@ class RobotBuilder:
         more
             Further keys of a drive, such as ``max_torque``.
         """
-        if joint in self.drives:
+        if _checks.name("joint", joint) in self.drives:
             raise ArgumentError(f"`{joint}` has a drive already", "argument `joint`", remedy="give each joint one drive")
-        _words([ratio], 1, "ratio")
-        keys: dict[str, Any] = {"rotor": rotor, "gear_ratio": ratio, **more}
+        keys: dict[str, Any] = {"rotor": rotor, "gear_ratio": _checks.number("ratio", ratio), **more}
         if transmission is not None:
             keys["transmission"] = transmission
         if friction is not None:
             keys["friction"] = friction
         for key in ("rotor", "transmission", "friction"):
-            if not isinstance(keys.get(key, {}), Mapping) and keys[key] != "rigid":
-                raise ArgumentError(f"{keys[key]!r} has no keys", f"argument `{key}`", remedy="give a mapping, as in a robot's YAML")
+            value = keys.get(key, {})
+            if not (isinstance(value, Mapping) or (key == "transmission" and isinstance(value, str) and value == "rigid")):
+                raise _checks.refused(key, f"{_checks.shown(value)} has no keys", "give a mapping, as in a robot's YAML")
         self.drives[joint] = keys
         return self
 
@@ -165,11 +173,25 @@ class RobotBuilder:
         return ElementTree.tostring(robot, encoding="unicode")
 
 
-def _words(numbers: Sequence[float], count: int, name: str) -> str:
-    """Numbers as a URDF has them, to the last bit."""
-    if len(numbers) != count:
-        raise ShapeError(f"{len(numbers)} numbers are given", f"argument `{name}`", "", f"give {count}")
-    for x in numbers:
-        if not math.isfinite(x):
-            raise NotFiniteError(f"{x} is not a finite number", f"argument `{name}`", "", "give finite numbers")
-    return " ".join(repr(float(x)) for x in numbers)
+def _word(argument: str, number: float) -> str:
+    """A number as a URDF has it, to the last bit."""
+    return repr(_checks.number(argument, number))
+
+
+def _triple(argument: str, numbers: Sequence[float]) -> str:
+    """Three numbers as a URDF has them."""
+    return " ".join(map(repr, _checks.numbers(argument, numbers, 3)))
+
+
+def _check_limits(kind: str, given: Mapping[str, str]) -> None:
+    """Refuses limits that the robot would not have."""
+    if kind == "fixed" and given:
+        raise _checks.refused(next(iter(given)), "a fixed joint has no limits", "leave it out, or give another `kind`")
+    range_ = [key for key in ("lower", "upper") if key in given]
+    if kind == "continuous" and range_:
+        raise _checks.refused(range_[0], "a continuous joint turns without limits", 'leave it out, or give `kind="revolute"`')
+    if len(range_) == 1:
+        missing = "upper" if range_ == ["lower"] else "lower"
+        raise _checks.refused(missing, f"it is missing, but `{range_[0]}` is given", "give both limits, or none")
+    if range_ and float(given["lower"]) > float(given["upper"]):
+        raise _checks.refused("lower", f"{given['lower']} is above `upper`, {given['upper']}", "give the smaller one as `lower`")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _gyroflex
+from . import _checks, _gyroflex
 from ._extras import extra
 from .errors import ArgumentError, FileError, RobotWarning
 
@@ -135,7 +135,8 @@ class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
     def to_pandas(self) -> pd.DataFrame:
         """All samples as a table: a row a sample, by ``time`` [s], and columns named as in CSV files (``columns``).
 
-        Units are in ``frame.attrs["units"]``, by the column's name. Needs pandas (``pip install gyroflex[pandas]``).
+        Units are in ``frame.attrs["units"]``, by the column's name. Needs pandas, and
+        the frame's own ``plot`` matplotlib: ``pip install "./crates/py[pandas,plots]"``.
         """
         pandas = extra("pandas", "pandas")
         names = [name for name in self if name != "time"]
@@ -154,6 +155,7 @@ class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
         ArgumentError
             Of a result that came from another process without a log: what the log would hold stayed there.
         """
+        path = _checks.path("path", path)
         if self._record is not None:
             self._record.write_mcap(path)
         elif self.log is None:
@@ -163,7 +165,7 @@ class SimulationResult(Mapping[str, "NDArray[np.float64]"]):
             try:
                 shutil.copyfile(self.log, path)
             except OSError as error:
-                raise FileError(str(error), "", os.fspath(path), "give a file that can be written") from error
+                raise FileError(str(error), "", path, "give a file that can be written") from error
 
     def plot(self, panels: Sequence[str] | None = None, joints: Sequence[str] | None = None) -> list[Axes]:
         """Draws the run over time, a panel below the other; see `gyroflex.plots.run`."""
@@ -183,8 +185,8 @@ def read_mcap(path: str | os.PathLike[str]) -> SimulationResult:
     FileError
         When the file cannot be read, or is no log of ours.
     """
-    named, joint_names, metadata, impacts, complete = _gyroflex.read_log(path)
-    name = os.fspath(path)
+    name = _checks.path("path", path)
+    named, joint_names, metadata, impacts, complete = _gyroflex.read_log(name)
     messages = () if complete else (f"{name}: the log was cut short; what reached the file was read",)
     for message in messages:
         warnings.warn(message, RobotWarning, stacklevel=2)

@@ -6,7 +6,7 @@ import os
 import warnings
 from collections.abc import Mapping
 
-from . import _gyroflex
+from . import _checks, _gyroflex
 from .errors import DivergedError, RobotWarning
 from .results import ContactImpact, SimulationResult
 
@@ -54,8 +54,9 @@ def attempt(
     set: Mapping[str, object] | None,
 ) -> tuple[SimulationResult, DivergedError | None]:
     """A run, and its error if it diverged; says nothing by itself."""
-    named, joint_names, metadata, messages, impacts, record, error = _gyroflex.run_scenario(scenario, log, set)
-    path = None if log is None else os.fspath(log)
+    path = None if log is None else _checks.path("log", log)
+    run = _gyroflex.run_scenario(_checks.path("scenario", scenario), path, set)
+    named, joint_names, metadata, messages, impacts, record, error = run
     struck = tuple(ContactImpact(*impact) for impact in impacts)
     result = SimulationResult(*named, joint_names, metadata, tuple(messages), struck, path, record)
     if error is not None:

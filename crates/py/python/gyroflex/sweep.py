@@ -12,12 +12,13 @@ import uuid
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _gyroflex
+from . import _checks, _gyroflex
 from ._extras import extra
 from .errors import ArgumentError, DivergedError, FileError, ModelError, ScenarioError
 from .results import SimulationResult
@@ -100,12 +101,12 @@ def sweep(
         What to write down of a run: a function of its ``SimulationResult`` that returns numbers or texts by name, the same names for
         every run. Default: the numbers of `SweepResult`.
     output
-        A ``.parquet`` (needs ``gyroflex[sweep]``) or ``.csv`` file for the table. Until all runs are done, each is kept in
-        ``<output>.journal`` as it ends, and the same call goes on from there after an interruption.
+        A ``.parquet`` or ``.csv`` file for the table; Parquet needs ``pip install "./crates/py[sweep]"``. Until all runs are done, each is
+        kept in ``<output>.journal`` as it ends, and the same call goes on from there after an interruption.
     overwrite
         Whether to write over an ``output`` that is complete.
     client
-        A ``distributed.Client``: runs go to the workers of its Dask cluster (``gyroflex[dask]``); those of a worker that dies go to
+        A ``distributed.Client``: runs go to the workers of its Dask cluster (extra ``dask``); those of a worker that dies go to
         another one.
     progress
         Whether to show a bar, if ``tqdm`` is installed.
@@ -116,12 +117,17 @@ def sweep(
         What is wrong with a file or a key, which would meet every run. A run that diverges or is refused is a row with its ``error``.
     """
     runs, swept = _runs(values)
-    if n_jobs == 0 or n_jobs < -1:
-        raise ArgumentError(f"{n_jobs} is not a number of jobs", "argument `n_jobs`", remedy="give a number above zero, or -1 for all cores")
-    target = None if output is None else Path(output)
+    if not isinstance(n_jobs, Integral) or n_jobs == 0 or n_jobs < -1:
+        raise _checks.refused("n_jobs", f"{_checks.shown(n_jobs)} is not a number of jobs", "give a number above zero, or -1 for all cores")
+    if measure is not None and not callable(measure):
+        raise _checks.refused("measure", f"{_checks.shown(measure)} cannot be called", "give a function of a `SimulationResult`")
+    if client is not None and not all(hasattr(client, name) for name in ("submit", "cancel", "nthreads")):
+        raise _checks.refused("client", f"it is of type `{type(client).__name__}`", "give a `distributed.Client`")
+    target = None if output is None else Path(_checks.path("output", output))
+    overwrite, progress = _checks.flag("overwrite", overwrite), _checks.flag("progress", progress)
     if target is not None:
         _check_output(target, overwrite)
-    run = _Run(os.path.abspath(scenario), measure)
+    run = _Run(os.path.abspath(_checks.path("scenario", scenario)), measure)
     journal = _Journal(target, [swept, runs])
     rows = journal.rows
     with closing(journal):
@@ -167,6 +173,11 @@ class _Run:
                         raise ArgumentError(f"it measures `{taken}`", "argument `measure`", remedy=remedy)
         except (DivergedError, ModelError, ScenarioError) as error:
             return {"error": str(error).splitlines()[0]}
+        except ArgumentError as error:
+            if error.element != "argument `set`":
+                raise
+            # What a run is told to set is what was given to the sweep.
+            raise ArgumentError(error.problem, "argument `values`", error.file, error.remedy) from None
         return {str(name): _plain(value) for name, value in row.items()}
 
 
@@ -185,12 +196,14 @@ def _runs(values: Mapping[str, Iterable[object]] | Iterable[Values]) -> tuple[li
     if isinstance(values, Mapping):
         swept = tuple(values)
         for key, several_values in values.items():
-            if isinstance(several_values, str) or not isinstance(several_values, Iterable):
-                problem = f"`{key}`: {several_values!r} is no list of values"
+            if isinstance(several_values, str) or not isinstance(several_values, Iterable) or getattr(several_values, "ndim", None) == 0:
+                problem = f"`{key}`: {_checks.shown(several_values)} is no list of values"
                 raise ArgumentError(problem, "argument `values`", remedy="give a list, of one value if there is one")
         several = [[_plain(value) for value in values[key]] for key in swept]
         runs = [dict(zip(swept, combination, strict=True)) for combination in itertools.product(*several)]
     else:
+        if not isinstance(values, Iterable):
+            raise ArgumentError(f"{_checks.shown(values)} has no keys", "argument `values`", remedy="give a mapping from keys to lists of values")
         given = list(values)
         if not all(isinstance(run, Mapping) for run in given):
             raise ArgumentError("not every run is a mapping", "argument `values`", remedy="give each run its keys and values")
@@ -198,6 +211,9 @@ def _runs(values: Mapping[str, Iterable[object]] | Iterable[Values]) -> tuple[li
         if any(set(run) != set(swept) for run in given):
             raise ArgumentError("not all runs have the same keys", "argument `values`", remedy="give every run every key")
         runs = [{key: _plain(run[key]) for key in swept} for run in given]
+    for key in swept:
+        if not isinstance(key, str):
+            raise ArgumentError(f"{_checks.shown(key)} is not a key", "argument `values`", remedy="give keys as those of `simulate(..., set=...)`")
     if not runs or not swept:
         raise ArgumentError("there is nothing to run", "argument `values`", remedy="give each key at least one value")
     return runs, swept
@@ -246,7 +262,7 @@ class _Journal:
             return
         digest = hashlib.sha256(_json(what).encode()).hexdigest()
         head = json.dumps({"gyroflex sweep": digest}) + "\n"
-        text = self.path.read_text(encoding="utf-8") if self.path.exists() else ""
+        text = _text_of(self.path) if self.path.exists() else ""
         # A line that was being written when the program or the machine stopped.
         kept = text[: text.rfind("\n") + 1]
         lines = kept.splitlines()
@@ -262,7 +278,10 @@ class _Journal:
                 where = f"{self.path}:{number}"
                 raise FileError("the line is damaged", "output", where, "take it out, or name another output") from None
             self.rows[i] = row
-        self._file = self.path.open("a", encoding="utf-8")
+        try:
+            self._file = self.path.open("a", encoding="utf-8")
+        except OSError as error:
+            raise FileError(f"it cannot be written: {error.strerror}", "output", str(self.path), "name another output") from error
         self._file.truncate(len(kept.encode()))
         if not kept:
             self._file.write(head)
@@ -284,11 +303,20 @@ class _Journal:
             self.path.unlink()
 
 
+def _text_of(journal: Path) -> str:
+    try:
+        return journal.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(f"it cannot be read: {error}", "output", str(journal), "name another output, or remove it") from error
+
+
 def _check_output(target: Path, overwrite: bool) -> None:
     if target.suffix not in (".parquet", ".csv"):
         raise ArgumentError(f"`{target.name}` is no file for a table", "argument `output`", remedy="end it in .parquet or .csv")
     if not target.absolute().parent.is_dir():
         raise FileError("its folder does not exist", "output", str(target), "make the folder first")
+    if target.is_dir():
+        raise FileError("it is a folder", "output", str(target), "name another file")
     if target.exists() and not overwrite:
         raise FileError("it exists already", "output", str(target), "name another file, remove this one, or say `overwrite=True`")
     if target.suffix == ".parquet":

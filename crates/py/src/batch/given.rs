@@ -178,13 +178,11 @@ pub(crate) fn columns<'py, F: Float>(
 /// Refuses a call that lacks an array.
 pub(crate) fn all_given(arguments: &[Argument<'_, '_>], elastic: bool) -> PyResult<()> {
     for (name, value, need) in arguments {
-        let problem = match need {
-            Need::Always => "it is missing",
-            Need::Elastic if elastic => "it is missing, but the robot has elastic joints in this model",
-            _ => continue,
-        };
-        if value.is_none() {
-            return Err(errors::argument(name, problem, "give one entry per joint, zeros for none"));
+        match need {
+            _ if value.is_some() => {}
+            Need::Always => return Err(errors::missing_torques(name)),
+            Need::Elastic if elastic => return Err(errors::missing_of_elastic(name)),
+            _ => {}
         }
     }
     Ok(())

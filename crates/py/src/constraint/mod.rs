@@ -82,7 +82,7 @@ impl PyRobot {
     ) -> PyResult<PyConstrainedMotion> {
         let (held, regularisation) = (self.held(&constraints)?, regularisation(threshold, damping)?);
         let read = |w: &mut Workspace| {
-            self.layout.state(w, q, qd, theta, thetad)?;
+            self.layout.or_batch().state(w, q, qd, theta, thetad)?;
             let Some(tau) = tau else {
                 return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
             };
@@ -288,8 +288,8 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyAny>> {
         let held = self.held(&constraints)?;
         let read = |w: &mut Workspace| {
-            self.layout.positions(q, &mut w.q)?;
-            self.layout.velocities("qd", qd, &mut w.qd)
+            self.layout.or_batch().positions(q, &mut w.q)?;
+            self.layout.or_batch().velocities("qd", qd, &mut w.qd)
         };
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             let [error, velocity, jacobian] = out else { return Ok(()) };

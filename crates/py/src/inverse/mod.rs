@@ -9,7 +9,7 @@ pub(crate) use result::PyElasticInverse;
 use crate::arguments::Layout;
 use crate::arrays::{numbers, read_rows, text_of};
 use crate::robot::PyRobot;
-use crate::{arguments, errors};
+use crate::{arguments, errors, named};
 use gyroflex::dynamics::{External, JointOrders};
 use gyroflex_sim::inverse::{joint_orders, with_least_damping};
 use kept::Wanted;
@@ -39,12 +39,17 @@ impl PyRobot {
         &self,
         py: Python<'py>,
         model: Option<&str>,
-        torque_derivatives: usize,
-        damping: Option<f64>,
+        #[pyo3(from_py_with = named::torque_derivatives)] torque_derivatives: usize,
+        #[pyo3(from_py_with = named::damping)] damping: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let Wanted { fidelity, damping, .. } = self.wanted(model, torque_derivatives, damping)?;
         let robot = with_least_damping(&self.robot, damping);
         let orders = joint_orders(&robot, fidelity, torque_derivatives).map_err(errors::raise)?;
+        // The largest number that the library counts to stands for all above it.
+        if orders.iter().any(|order| order.position == u8::MAX) {
+            let problem = format!("{torque_derivatives} need more derivatives of the motion than can be counted");
+            return Err(errors::argument("torque_derivatives", problem, "ask for fewer"));
+        }
         let answer = PyDict::new(py);
         for (joint, order) in robot.joints.iter().zip(orders) {
             answer.set_item(&joint.name, order.position)?;
@@ -93,11 +98,11 @@ impl PyRobot {
         q: &Bound<'py, PyAny>,
         derivatives: &Bound<'py, PyAny>,
         deflection: Option<&Bound<'py, PyAny>>,
-        step: f64,
+        #[pyo3(from_py_with = named::step)] step: f64,
         model: Option<&str>,
         tau_ext: Option<&Bound<'py, PyAny>>,
-        torque_derivatives: usize,
-        damping: Option<f64>,
+        #[pyo3(from_py_with = named::torque_derivatives)] torque_derivatives: usize,
+        #[pyo3(from_py_with = named::damping)] damping: Option<f64>,
     ) -> PyResult<PyElasticInverse> {
         let wanted = self.wanted(model, torque_derivatives, damping)?;
         at_least_zero("step", step)?;
@@ -108,7 +113,7 @@ impl PyRobot {
             self.layout.forces("deflection", deflection, &mut now)?;
         }
         self.inverses.with(&self.robot, wanted, |inverse| {
-            self.check(inverse.smoothness().joints, motion.order)?;
+            self.check(inverse.smoothness().joints, &motion)?;
             inverse.set_deflection(&now);
             let damped = inverse.smoothness().joints.iter().any(|j| j.damped);
             if damped && step == 0.0 && motion.times.is_some_and(|times| times > 1) {
@@ -123,7 +128,12 @@ impl PyRobot {
             let mut run = || {
                 for k in 0..motion.times.unwrap_or(1) {
                     let ext = External { tau: loads.at(k), wrenches: &[] };
-                    inverse.at(motion.positions(k), motion.derivatives(k), ext, step)?;
+                    inverse.at(motion.positions(k), motion.derivatives(k), ext, step).map_err(|e| {
+                        match motion.times {
+                            Some(_) => gyroflex_sim::Error { problem: format!("at time {k}: {}", e.problem), ..e },
+                            None => e,
+                        }
+                    })?;
                     inverse.advance();
                     found.push(inverse);
                 }
@@ -135,6 +145,9 @@ impl PyRobot {
         })
     }
 }
+
+/// The library counts derivatives to 255, of which some are those of the motion.
+const MOST_DERIVATIVES: usize = 250;
 
 const DERIVATIVES: &str = "give a row for each derivative, the velocities first, with one entry per velocity coordinate in the order of \
                            `joint_names`; a floating root leads with six";
@@ -179,7 +192,7 @@ impl PyRobot {
         let (q_array, d_array) = (numbers("q", q)?, numbers("derivatives", derivatives)?);
         if q_array.ndim() != 2 && d_array.ndim() != 3 {
             let mut positions = vec![0.0; nq];
-            self.layout.positions(q, &mut positions)?;
+            self.layout.or_times().positions(q, &mut positions)?;
             let derivatives = read_rows("derivatives", derivatives, nv, DERIVATIVES)?;
             return Ok(Motion { times: None, order: derivatives.len() / nv.max(1), nq, nv, positions, derivatives });
         }
@@ -193,12 +206,12 @@ impl PyRobot {
             return Err(errors::shape("derivatives", problem, "give one row of each for every time"));
         }
         let mut positions = vec![0.0; times * nq];
-        for (row, to) in q.try_iter()?.zip(positions.chunks_mut(nq.max(1))) {
-            self.layout.positions(&row?, to)?;
+        for (k, (row, to)) in q.try_iter()?.zip(positions.chunks_mut(nq.max(1))).enumerate() {
+            self.layout.positions_of(&format!("q[{k}]"), &row?, to)?;
         }
         let mut all = Vec::new();
-        for row in derivatives.try_iter()? {
-            all.extend(read_rows("derivatives", &row?, nv, DERIVATIVES)?);
+        for (k, row) in derivatives.try_iter()?.enumerate() {
+            all.extend(read_rows(&format!("derivatives[{k}]"), &row?, nv, DERIVATIVES)?);
         }
         Ok(Motion { times: Some(times), order, nq, nv, positions, derivatives: all })
     }
@@ -207,6 +220,10 @@ impl PyRobot {
         let fidelity = model.map_or(Ok(self.robot.fidelity), arguments::fidelity)?;
         let damping = damping.unwrap_or(0.0);
         at_least_zero("damping", damping)?;
+        if torque_derivatives > MOST_DERIVATIVES {
+            let problem = format!("{torque_derivatives} are more than can be counted");
+            return Err(errors::argument("torque_derivatives", problem, format!("give at most {MOST_DERIVATIVES}")));
+        }
         Ok(Wanted { fidelity, torque_derivatives, damping })
     }
 
@@ -230,12 +247,13 @@ impl PyRobot {
             return Err(errors::shape("tau_ext", problem, remedy));
         }
         let (rows, mut all) = (if shape.len() == 3 { shape[1] } else { 1 }, Vec::new());
-        for row in value.try_iter()? {
+        for (k, row) in value.try_iter()?.enumerate() {
+            let name = format!("tau_ext[{k}]");
             if shape.len() == 3 {
-                all.extend(read_rows("tau_ext", &row?, nv, DERIVATIVES)?);
+                all.extend(read_rows(&name, &row?, nv, DERIVATIVES)?);
             } else {
                 let mut load = vec![0.0; nv];
-                self.layout.forces("tau_ext", &row?, &mut load)?;
+                self.layout.forces(&name, &row?, &mut load)?;
                 all.extend(load);
             }
         }
@@ -243,7 +261,8 @@ impl PyRobot {
     }
 
     /// Whether a motion has the derivatives that are needed, joint by joint.
-    fn check(&self, orders: &[JointOrders], given: usize) -> PyResult<()> {
+    fn check(&self, orders: &[JointOrders], motion: &Motion) -> PyResult<()> {
+        let given = motion.order;
         let few = self.robot.joints.iter().zip(orders).filter(|(_, order)| usize::from(order.position) > given);
         let few: Vec<String> =
             few.map(|(joint, order)| format!("`{}` needs {} and has {given}", joint.name, order.position)).collect();
@@ -255,8 +274,8 @@ impl PyRobot {
             "derivatives",
             format!("the torques depend on more derivatives than are given: {}", few.join(", ")),
             format!(
-                "give an array of shape ({most}, {}), or invert a model that needs fewer: `reduced`, or one with added `damping`",
-                self.layout.nv
+                "give an array of shape {}, or invert a model that needs fewer: `reduced`, or one with added `damping`",
+                text_of(&motion.times.into_iter().chain([most.into(), self.layout.nv]).collect::<Vec<_>>())
             ),
         ))
     }

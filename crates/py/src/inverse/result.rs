@@ -126,8 +126,11 @@ impl PyElasticInverse {
         let width = all.len() / self.times.unwrap_or(1).max(1);
         let of = orders.start * self.nv..orders.end * self.nv;
         let numbers: Vec<f64> = all.chunks(width.max(1)).flat_map(|row| &row[of.clone()]).copied().collect();
-        if numbers.iter().any(|x| !x.is_finite()) {
-            return Err(errors::overflow(name));
+        if let Some(i) = numbers.iter().position(|x| !x.is_finite()) {
+            let one = (orders.end - orders.start) * self.nv;
+            return Err(errors::overflow(
+                &self.times.map_or(name.to_owned(), |_| format!("{name}[{}]", i / one.max(1))),
+            ));
         }
         let shape: Vec<usize> = self.times.into_iter().chain(shape.iter().copied()).collect();
         PyArray1::from_vec(py, numbers).reshape(shape)

@@ -212,7 +212,7 @@ impl PyRobot {
     fn start(&self, linearizer: &Linearizer, q: Argument<'_, '_>) -> PyResult<Vec<f64>> {
         let Some(q) = q else { return Ok(linearizer.zero_position()) };
         let mut positions = vec![0.0; self.layout.nq];
-        self.layout.positions(q, &mut positions)?;
+        self.layout.or_batch().positions(q, &mut positions)?;
         // Modes that are not given are found: the links hang at rest.
         if q.len().is_ok_and(|n| n + self.layout.modes == self.layout.nq) {
             positions.truncate(self.layout.nq - self.layout.modes);
@@ -233,7 +233,7 @@ impl PyRobot {
         let mut all = q.to_vec();
         all.resize(self.layout.nq, 0.0);
         let mut state = StateVec { q: all, ..StateVec::zeros(0, nv) };
-        self.layout.velocities("qd", qd, &mut state.qd)?;
+        self.layout.or_batch().velocities("qd", qd, &mut state.qd)?;
         self.layout.motors("theta", theta, elastic, &mut state.theta)?;
         self.layout.motors("thetad", thetad, elastic, &mut state.thetad)?;
         let mut torques = vec![0.0; nv];

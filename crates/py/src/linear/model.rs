@@ -7,7 +7,7 @@ use crate::errors;
 use gyroflex_sim::linearize::{Linearization, Matrices, ModeKind, NaturalMode, natural_modes, zero_order_hold_of};
 use numpy::Complex64;
 use pyo3::prelude::*;
-use pyo3::types::PyComplex;
+use pyo3::types::{PyComplex, PyIterator, PyList};
 use rayon::prelude::*;
 
 /// A linear model `x' = A x + B u, y = C x + D u` about an operating point, or, sampled, `x[k+1] = A x[k] + B u[k]`.
@@ -189,6 +189,11 @@ impl PyLinearization {
     fn __getitem__(&self, index: isize) -> PyResult<Self> {
         let k = entry(self.batch, self.models.len(), "linear model", index)?;
         Ok(Self { models: vec![self.models[k].clone()], batch: false })
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        let each = (0..self.__len__()? as isize).map(|k| self.__getitem__(k));
+        PyList::new(py, each.collect::<PyResult<Vec<_>>>()?)?.try_iter()
     }
 
     fn __repr__(&self) -> String {

@@ -6,6 +6,7 @@ use crate::errors;
 use gyroflex_sim::linearize::{Extreme, Response};
 use numpy::{Complex64, Element};
 use pyo3::prelude::*;
+use pyo3::types::{PyIterator, PyList};
 
 /// Response of a joint to its own motor; motor quantities are seen from the link side.
 ///
@@ -95,6 +96,11 @@ impl PyFrequencyResponse {
     fn __getitem__(&self, index: isize) -> PyResult<Self> {
         let k = entry(self.batch, self.responses.len(), "response", index)?;
         Ok(Self { responses: vec![self.responses[k].clone()], batch: false })
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        let each = (0..self.__len__()? as isize).map(|k| self.__getitem__(k));
+        PyList::new(py, each.collect::<PyResult<Vec<_>>>()?)?.try_iter()
     }
 
     fn __repr__(&self) -> String {

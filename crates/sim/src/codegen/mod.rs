@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 pub use gyroflex_codegen::emit::{Language, Precision, Style};
 pub use report::{Parts, Report, Row, Weighing};
-pub use request::{Request, Simplify, Target};
+pub use request::{NOT_EXPLICIT, Request, Simplify, Target};
 
 /// Generated files, and what they compute at what cost.
 #[derive(Clone, Debug)]

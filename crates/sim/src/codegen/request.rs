@@ -2,7 +2,7 @@
 
 use super::symbolic;
 use crate::error::{Error, ErrorKind};
-use crate::load::Overrides;
+use crate::load::{Overrides, file_of};
 use crate::robot::Robot;
 use crate::scenario::ScenarioFile;
 use gyroflex::dynamics::Axes;
@@ -55,6 +55,9 @@ pub struct Request {
     pub overrides: Overrides,
 }
 
+/// More processors or lanes than there are for one function.
+const MOST: usize = 1025;
+
 impl Request {
     /// Whether the explicit equations are asked for, and not the algorithms.
     pub(super) fn is_explicit(&self) -> bool {
@@ -80,8 +83,10 @@ impl Request {
                 wrong("--split", "parts are run side by side by Rust alone", "choose --lang rust")
             }
             (Some(0), ..) => wrong("--split", "there is no part", "give at least 1"),
+            (Some(MOST..), ..) => wrong("--split", "no machine has so many processors", "give as many as it has"),
             (_, Some(_), _) if !rust => wrong("--lanes", "lanes are Rust's", "choose --lang rust"),
             (_, Some(0), _) => wrong("--lanes", "there is no lane", "give at least 1"),
+            (_, Some(MOST..), _) => wrong("--lanes", "no processor has so many lanes", "give 4 or 8, say"),
             (.., Some(simplify)) if !(simplify.tolerance.is_finite() && simplify.tolerance >= 0.0) => {
                 wrong("--simplify-to", "it is not a part of a torque", "give a number from 0 up, such as 1e-3")
             }
@@ -123,7 +128,7 @@ impl Request {
 
     /// How the same files are made again.
     pub(super) fn command(&self, robot: &Robot, fidelity: Fidelity) -> String {
-        let file = robot.sources.last().map_or("ROBOT", |s| s.name.as_str());
+        let file = file_of(robot).unwrap_or("ROBOT");
         let language = match self.target {
             Target::Code(language) => language.name(),
             Target::Latex => "latex",
@@ -200,9 +205,12 @@ pub(super) fn unavailable(robot: &Robot, e: Unavailable) -> Error {
     wrong(robot, &format!("--what {}", e.quantity.name()), e.reason, &e.remedy)
 }
 
+/// What an error is about whose robot has no explicit equations, which no option asks for by itself.
+pub const NOT_EXPLICIT: &str = "explicit equations";
+
 /// A robot without explicit equations.
 pub(super) fn not_explicit(robot: &Robot, e: &NotExplicit) -> Error {
-    wrong(robot, "explicit equations", e.to_string(), "generate code without --simplify-to, which every robot has")
+    wrong(robot, NOT_EXPLICIT, e.to_string(), "generate code without --simplify-to, which every robot has")
 }
 
 /// A name as programs may have it.

@@ -6,7 +6,7 @@ use super::file::{DriveFile, RobotFile};
 use super::flexible::FlexibleFiles;
 use super::fuse::{Bodies, fuse};
 use super::held::HeldFiles;
-use super::merge::Merge;
+use super::merge::{Merge, place_of};
 use super::mount::Places;
 use super::nearest::nearest;
 use super::tree::{JointElement, Tree};
@@ -186,7 +186,7 @@ fn warn_of_idle_tags(
     let source = tags.get(&first.name).and_then(Tags::first_source).unwrap_or(&first.at);
     let others = if idle.len() == 1 { String::new() } else { format!(" and those of {} more joints", idle.len() - 1) };
     warnings.push(Warning {
-        file: source.split(' ').next().unwrap_or("").to_owned(),
+        file: place_of(source).to_owned(),
         element: format!("joint `{}`", first.name),
         message: format!("its gear ratio{others} has no effect: no rotor inertia is given that the gear could turn"),
     });

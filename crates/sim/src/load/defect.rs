@@ -1,5 +1,6 @@
 //! Errors of the core in the user's words: joint, link, key, remedy.
 
+use super::merge::place_of;
 use crate::error::{Error, ErrorKind};
 use crate::robot::Robot;
 use gyroflex::model::{Defect, ModelError};
@@ -12,7 +13,7 @@ pub(crate) fn explain(e: &ModelError, robot: &Robot, file: String) -> Error {
     let key = key(&e.defect);
     // A number of a drive stands where the table says it came from.
     let row = key.and_then(|k| robot.table.iter().find(|r| r.joint == name && r.key.starts_with(k)));
-    let place = row.and_then(|r| r.source.split([' ', ',']).next()).filter(|s| *s != "default");
+    let place = row.map(|r| place_of(&r.source)).filter(|s| *s != "default");
     let element = match (&e.defect, key) {
         _ if joint.is_none() => String::new(),
         (Defect::InertiaNotPositive | Defect::MasslessInertia | Defect::RotorLargerThanLink, _) => {

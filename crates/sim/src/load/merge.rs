@@ -80,6 +80,12 @@ impl Merge<'_> {
     }
 }
 
+/// The file and line of a source, without what is said about it: file names may have blanks.
+pub(crate) fn place_of(source: &str) -> &str {
+    let end = [" <", ", instead of "].iter().filter_map(|mark| source.find(mark)).min();
+    &source[..end.unwrap_or(source.len())]
+}
+
 /// The one value that tags agree on.
 ///
 /// # Errors
@@ -94,7 +100,7 @@ pub(crate) fn agreed<'t>(
     match tags.iter().find(|t| !same(t.value, first.value)) {
         Some(other) if !overruled => Err(Error {
             kind: ErrorKind::Urdf,
-            file: other.source.split(' ').next().unwrap_or("").to_owned(),
+            file: place_of(&other.source).to_owned(),
             element: format!("joint `{joint}`"),
             problem: format!(
                 "the {what} is {} at {}, but {} at {}",

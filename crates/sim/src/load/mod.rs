@@ -101,7 +101,7 @@ pub fn load_from(files: &dyn FileSource, path: &Path, options: &LoadOptions) -> 
 /// Loads a URDF in memory, with the text of a robot YAML, whose `urdf` is not followed. Mesh files are not looked for.
 ///
 /// # Errors
-/// Like [`load`]; `file_name` and `robot.yaml` stand for the files.
+/// Like [`load`]; `file_name` (or [`URDF_TEXT`]) stands for the URDF, and [`YAML_TEXT`] for the YAML.
 pub fn load_urdf_text(
     text: &str,
     file_name: &str,
@@ -110,17 +110,29 @@ pub fn load_urdf_text(
 ) -> Result<Robot, Error> {
     let urdf = Urdf { text, path: Path::new(file_name), files: None };
     let named;
-    let drives = match drives {
-        Some(drives) => drives,
+    let (drives, file) = match drives {
+        Some(drives) => (drives, YAML_TEXT.to_owned()),
         None if options.overrides.is_empty() => return assemble(&urdf, None, options),
         None => {
             named = names_only(file_name);
-            &named
+            (named.as_str(), file_name.to_owned())
         }
     };
-    let file = "robot.yaml".to_owned();
     let yaml = yaml::parse_with(drives, &file, &options.overrides)?;
     assemble(&urdf, Some(&Drives { yaml: &yaml, text: drives, file }), options)
+}
+
+/// What messages call a URDF that is in no file.
+pub const URDF_TEXT: &str = "the URDF text";
+/// What messages call the YAML beside such a URDF.
+pub const YAML_TEXT: &str = "the YAML text";
+
+/// The file that a robot is loaded from; `None` if it is from texts.
+pub(crate) fn file_of(robot: &Robot) -> Option<&str> {
+    let urdf = robot.sources.first()?;
+    let own = |s: &&SourceFile| s.text != names_only(&urdf.name);
+    let name = robot.sources.iter().rfind(own).map(|s| s.name.as_str());
+    name.filter(|name| ![URDF_TEXT, YAML_TEXT].contains(name))
 }
 
 /// A robot YAML that says nothing but its URDF.
@@ -160,7 +172,8 @@ fn assemble(urdf: &Urdf<'_>, drives: Option<&Drives<'_>>, options: &LoadOptions)
         warnings.extend(meshes::check(&xml, files, urdf.path));
     }
     let tags = dialects::read(&xml, &tree, &mut warnings)?;
-    let stem = urdf.path.file_stem().map_or_else(|| "robot".to_owned(), |s| s.to_string_lossy().into_owned());
+    let stem = urdf.path.file_stem().filter(|_| file != URDF_TEXT);
+    let stem = stem.map_or_else(|| "robot".to_owned(), |s| s.to_string_lossy().into_owned());
     let mut robot = build::build(&tree, &tags, drives.map(|d| d.yaml), &options, &stem, warnings)?;
     robot.sources.push(SourceFile { name: file, text: urdf.text.to_owned() });
     if let Some(drives) = drives {

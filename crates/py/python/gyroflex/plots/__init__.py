@@ -1,4 +1,4 @@
-"""Pictures of runs and robots with matplotlib (``pip install gyroflex[plots]``).
+"""Pictures of runs and robots with matplotlib (``pip install "./crates/py[plots]"``).
 
 Functions draw a new figure with ``matplotlib.pyplot`` and return its axes; ``plt.savefig("run.png")`` keeps it, and ``plt.show()``
 opens a window.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from .. import _checks
 from .._extras import extra
-from ..errors import ArgumentError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,8 +34,16 @@ def legend(ax: Axes) -> None:
     ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02), frameon=False, fontsize="small")
 
 
-def known(argument: str, names: Iterable[str], allowed: Iterable[str]) -> None:
+def known(argument: str, name: str, allowed: Iterable[str]) -> str:
     """Refuses an argument that names something else than what is allowed."""
-    for name in names:
-        if name not in allowed:
-            raise ArgumentError(f"`{name}` is unknown", f"argument `{argument}`", "", f"give one of {', '.join(allowed)}")
+    if not isinstance(name, str) or name not in allowed:
+        raise _checks.refused(argument, f"`{name}` is unknown", f"give one of {', '.join(allowed)}")
+    return name
+
+
+def several(argument: str, names: Iterable[str], allowed: Iterable[str]) -> tuple[str, ...]:
+    """Like `known`, of a list that is not empty."""
+    listed = tuple(known(argument, name, allowed) for name in _checks.names(argument, names))
+    if not listed:
+        raise _checks.refused(argument, "it is empty, so that nothing is drawn", f"give some of {', '.join(allowed)}")
+    return listed

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import _checks
 from .._extras import extra
-from ..errors import ArgumentError
+from .._gyroflex import FrequencyResponse
 from ._figure import COLOURS, legend, stacked
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
-
-    from .._gyroflex import FrequencyResponse
 
 
 def frequency_response(responses: FrequencyResponse | Iterable[FrequencyResponse], labels: Sequence[str] | None = None) -> list[Axes]:
@@ -24,15 +23,19 @@ def frequency_response(responses: FrequencyResponse | Iterable[FrequencyResponse
     Parameters
     ----------
     responses
-        One or several, of several joints or of several robots.
+        One or several, of several joints or of several robots, or a batch of poses.
     labels
         What each is called, the joint's name unless given.
     """
-    several = list(responses) if isinstance(responses, Iterable) else [responses]
-    names = [response.joint for response in several] if labels is None else list(labels)
+    single = isinstance(responses, FrequencyResponse) and responses.motor.ndim == 1
+    several = list(responses) if isinstance(responses, Iterable) and not single else [responses]
+    for response in several:
+        _checks.of_kind("responses", response, FrequencyResponse)
+    if not several:
+        raise _checks.refused("responses", "there is none", "give what `Robot.frequency_response` returned")
+    names = tuple(response.joint for response in several) if labels is None else _checks.names("labels", labels)
     if len(names) != len(several):
-        problem, remedy = f"{len(names)} labels for {len(several)} responses", "give one for each"
-        raise ArgumentError(problem, "argument `labels`", "", remedy)
+        raise _checks.refused("labels", f"{len(names)} labels for {len(several)} responses", "give one for each")
     axes = stacked(2, height=3.0)
     magnitude, phase = axes
     for i, (response, name) in enumerate(zip(several, names, strict=True)):

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ._figure import COLOURS, GREY, known, legend, stacked
+from .. import _checks
+from ..results import SimulationResult
+from ._figure import COLOURS, GREY, legend, several, stacked
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..results import SimulationResult
 
 
 def run(result: SimulationResult, panels: Sequence[str] | None = None, joints: Sequence[str] | None = None) -> list[Axes]:
@@ -32,10 +32,9 @@ def run(result: SimulationResult, panels: Sequence[str] | None = None, joints: S
     ArgumentError
         A panel or a joint of another name.
     """
-    panels = ("position", "torque", "energy", "tracking_error") if panels is None else tuple(panels)
-    joints = result.joint_names if joints is None else tuple(joints)
-    known("panels", panels, PANELS)
-    known("joints", joints, result.joint_names)
+    _checks.of_kind("result", result, SimulationResult)
+    panels = ("position", "torque", "energy", "tracking_error") if panels is None else several("panels", panels, PANELS)
+    joints = result.joint_names if joints is None else several("joints", joints, result.joint_names)
     columns = [result.joint_names.index(joint) for joint in joints]
     axes = stacked(len(panels))
     for ax, panel in zip(axes, panels, strict=True):

@@ -6,13 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import _checks
+from .._gyroflex import Robot
 from ._figure import known, pyplot
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
-    from .._gyroflex import Robot
+MOST_POINTS = 1000
+"""Along each axis; a map takes its square of eigenvalue problems."""
 
 
 def significance_map(
@@ -41,17 +44,23 @@ def significance_map(
     x_range, y_range
         From where to where the joints turn [rad or m].
     points
-        How many positions of each.
+        How many positions of each, at least two.
     """
-    known("x", (x,), robot.joint_names)
-    known("y", (y,), robot.joint_names)
+    _checks.of_kind("robot", robot, Robot)
+    known("x", x, robot.joint_names)
+    if known("y", y, robot.joint_names) == x:
+        raise _checks.refused("y", f"it is `{y}` as well as `x`", "give another joint")
+    x_range, y_range = _interval("x_range", x_range), _interval("y_range", y_range)
+    points = _checks.count("points", points, 2, MOST_POINTS)
     first = robot.nq - len(robot.joint_names) - len(robot.mode_names)
     column, row = (first + robot.joint_names.index(joint) for joint in (x, y))
     if q is None:
         pose = np.zeros(robot.nq)
         pose[6 : 7 if robot.floating else 6] = 1.0
     else:
-        pose = np.array(q, dtype=float)
+        given = _checks.numbers("q", q, *sorted({robot.nq, robot.nq - len(robot.mode_names)}))
+        pose = np.zeros(robot.nq)
+        pose[: len(given)] = given
     across, up = np.linspace(*x_range, points), np.linspace(*y_range, points)
     ratios = np.empty((points, points))
     for i, pose[row] in enumerate(up):
@@ -63,6 +72,13 @@ def significance_map(
     pyplot().colorbar(mesh, ax=ax, label="largest significance ratio of any velocity [-]")
     ax.set(xlabel=f"{x} [rad or m]", ylabel=f"{y} [rad or m]", title=robot.name)
     return ax
+
+
+def _interval(argument: str, ends: tuple[float, float]) -> tuple[float, float]:
+    low, high = _checks.numbers(argument, ends, 2)
+    if not low < high:
+        raise _checks.refused(argument, f"it goes from {low:g} to {high:g}", "give the smaller one first")
+    return low, high
 
 
 def _largest_significance(robot: Robot, q: NDArray[np.float64]) -> float:

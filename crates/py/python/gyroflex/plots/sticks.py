@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import os
+import subprocess
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import _checks
 from .._extras import extra
-from ..errors import ArgumentError
+from .._gyroflex import Robot
+from ..errors import ArgumentError, FileError
+from ..results import SimulationResult
 from ._figure import COLOURS, pyplot
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
     from numpy.typing import ArrayLike, NDArray
 
-    from .._gyroflex import Robot
-    from ..results import SimulationResult
-
 FLAT = 1e-6
 """Depth of what lies in a plane [m]."""
+MOST_PICTURES = 100_000
 FAR = 2.5
 """A way that is so many times as long as the robot is large is not shown as a whole."""
 
@@ -68,16 +70,25 @@ def animate(
     ArgumentError
         A result of another robot, times that the run has not, or a file that cannot be written in this format.
     """
+    _checks.of_kind("robot", robot, Robot)
+    _checks.of_kind("result", result, SimulationResult)
     if result.joint_names != tuple(robot.joint_names):
         problem = f"the robot's joints are {', '.join(robot.joint_names)}, the result's {', '.join(result.joint_names)}"
         raise ArgumentError(problem, "argument `robot`", "", "give the robot that the result is of")
-    film = None if path is None else os.fspath(path)
+    if not result.t.size:
+        raise _checks.refused("result", "it has no samples", "give a run that recorded some")
+    _checks.positive("fps", fps)
+    speed, view = _checks.positive("speed", speed), _pair("view", view)
+    film = None if path is None else _checks.path("path", path)
     writer = None if film is None else _writer(film)
-    start, stop = (result.t[0], result.t[-1]) if times is None else times
-    shown = np.arange(start, stop + 1e-9, speed / fps)
+    start, stop = (result.t[0], result.t[-1]) if times is None else _pair("times", times)
     if not result.t[0] <= start <= stop <= result.t[-1]:
         problem = f"the run goes from {result.t[0]:g} s to {result.t[-1]:g} s, not from {start:g} s to {stop:g} s"
         raise ArgumentError(problem, "argument `times`", "", "give times of the run")
+    pictures = (stop - start) * fps / speed
+    if pictures > MOST_PICTURES:
+        raise _checks.refused("speed", f"{pictures:.0f} pictures are more than fit", "play it faster, or give fewer `fps` or `times`")
+    shown = np.arange(start, stop + 1e-9, speed / fps)
     samples = np.searchsorted(result.t, shown - 1e-9).clip(max=result.t.size - 1)
     sticks = sticks_at(robot, _positions(robot, result)[samples])
 
@@ -124,6 +135,11 @@ def animate(
     return animation
 
 
+def _pair(argument: str, numbers: tuple[float, float]) -> tuple[float, float]:
+    first, second = _checks.numbers(argument, numbers, 2)
+    return first, second
+
+
 def _positions(robot: Robot, result: SimulationResult) -> NDArray[np.float64]:
     """Positions of every sample, shape ``(samples, nq)``."""
     root = [result["base"][:, :7]] if robot.floating else []
@@ -165,19 +181,24 @@ def _pairs(robot: Robot, index: dict[str, int], origins: NDArray[np.float64]) ->
 
 def _writer(path: str) -> str | None:
     """What writes a film of this name; `None` for a page with its pictures inside."""
+    if not os.path.isdir(os.path.dirname(path) or "."):
+        raise FileError("its folder does not exist", "", path, "make the folder first")
     ending = os.path.splitext(path)[1].lower()
     if ending == ".html":
         return None
     writer = "pillow" if ending == ".gif" else "ffmpeg"
     if not extra("matplotlib.animation", "plots").writers.is_available(writer):
-        remedy = "install ffmpeg, or write .gif or .html" if writer == "ffmpeg" else "run `pip install pillow`"
+        remedy = "install ffmpeg, or write .gif or .html" if writer == "ffmpeg" else 'run `pip install "./crates/py[plots]"` in the repository of gyroflex'
         raise ArgumentError(f"{writer} is needed for `{path}` and not installed", "argument `path`", "", remedy)
     return writer
 
 
 def _save(animation: FuncAnimation, path: str, writer: str | None, fps: int) -> None:
-    if writer is not None:
-        animation.save(path, writer=writer, fps=fps)
-        return
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(animation.to_jshtml(fps=fps))
+    try:
+        if writer is not None:
+            animation.save(path, writer=writer, fps=fps)
+            return
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(animation.to_jshtml(fps=fps))
+    except (OSError, subprocess.SubprocessError) as error:
+        raise FileError(str(error), "", path, "give a file that can be written, in a format of its writer") from error
