@@ -15,14 +15,15 @@ macro_rules! readers {
 }
 
 readers! {
-    count -> usize: samples, torque_derivatives;
+    count -> usize: points, samples, torque_derivatives;
     count -> u64: seed;
-    count_or_none -> Option<usize>: lanes, split;
-    number -> f64: rise, step, threshold;
-    number_or_none -> Option<f64>: damping, simplify_to, speed;
-    triple_or_none -> Option<[f64; 3]>: gravity, point;
+    count_or_none -> Option<usize>: lanes, split, steps;
+    number -> f64: dt, offset, ratio, restitution, rise, stabilisation, step, threshold;
+    number_or_none -> Option<f64>: damping, simplify_to, speed, start, stop;
+    triple -> [f64; 3]: rpy, xyz;
+    triple_or_none -> Option<[f64; 3]>: at_rpy, at_xyz, gravity, point, slip;
     names -> Vec<String>: keep_symbol;
-    names_or_none -> Option<Vec<String>>: directions;
+    names_or_none -> Option<Vec<String>>: directions, passive;
     name_or_names -> Option<Vec<String>>: what;
 }
 
@@ -56,12 +57,14 @@ fn too_large(value: &Bound<'_, PyAny>, error: PyErr) -> PyResult<bool> {
     if error.is_instance_of::<PyOverflowError>(value.py()) { value.lt(0) } else { Err(error) }
 }
 
-fn triple_or_none(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<[f64; 3]>> {
-    if value.is_none() {
-        return Ok(None);
-    }
+fn triple(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
     let mut numbers = [0.0; 3];
-    arrays::read(name, value, &mut numbers, "give three numbers: x, y and z").map(|()| Some(numbers))
+    arrays::read(name, value, &mut numbers, "give three numbers")?;
+    Ok(numbers)
+}
+
+fn triple_or_none(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<[f64; 3]>> {
+    if value.is_none() { Ok(None) } else { triple(name, value).map(Some) }
 }
 
 /// A list of names. A text, which Python takes for a list of letters, is not one.

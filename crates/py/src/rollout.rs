@@ -4,6 +4,7 @@ use crate::arguments::choice;
 use crate::arrays::{numbers, text_of};
 use crate::batch::{self, Finite, Float, Need, Numbers, all_given, all_single, columns};
 use crate::errors;
+use crate::named;
 use crate::robot::PyRobot;
 use gyroflex_sim::batch::{Rollout, Scheme, Trajectories, rollout};
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
@@ -59,10 +60,10 @@ impl PyRobot {
         q0: &Bound<'py, PyAny>,
         qd0: &Bound<'py, PyAny>,
         tau: &Bound<'py, PyAny>,
-        dt: f64,
+        #[pyo3(from_py_with = named::dt)] dt: f64,
         theta0: Option<&Bound<'py, PyAny>>,
         thetad0: Option<&Bound<'py, PyAny>>,
-        steps: Option<usize>,
+        #[pyo3(from_py_with = named::steps)] steps: Option<usize>,
         integrator: &str,
         model: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {

@@ -10,6 +10,7 @@ pub(crate) use spec::PyConstraint;
 use crate::batch::Need;
 use crate::derivatives::{acceleration, load, motion_arguments, state};
 use crate::errors;
+use crate::named;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
 use distribution::Distribution;
@@ -77,14 +78,15 @@ impl PyRobot {
         constraints: Held<'py>,
         model: Option<&str>,
         tau_ext: Option<&Bound<'py, PyAny>>,
-        threshold: f64,
-        damping: f64,
+        #[pyo3(from_py_with = named::threshold)] threshold: f64,
+        #[pyo3(from_py_with = named::damping)] damping: Option<f64>,
     ) -> PyResult<PyConstrainedMotion> {
-        let (held, regularisation) = (self.held(&constraints)?, regularisation(threshold, damping)?);
+        let (held, regularisation) =
+            (self.held(&constraints)?, regularisation(threshold, damping.unwrap_or_default())?);
         let read = |w: &mut Workspace| {
             self.layout.or_batch().state(w, q, qd, theta, thetad)?;
             let Some(tau) = tau else {
-                return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
+                return Err(errors::missing_torques("tau"));
             };
             self.layout.forces("tau", tau, &mut w.tau)?;
             self.layout.load_or_none(tau_ext, &mut w.tau_ext)
@@ -163,16 +165,17 @@ impl PyRobot {
         thetad: Option<&Bound<'py, PyAny>>,
         thetadd: Option<&Bound<'py, PyAny>>,
         constraints: Held<'py>,
-        passive: Option<Vec<String>>,
+        #[pyo3(from_py_with = named::passive)] passive: Option<Vec<String>>,
         torque_weights: Option<&Bound<'py, PyAny>>,
         multiplier_weights: Option<&Bound<'py, PyAny>>,
         wanted: Option<&Bound<'py, PyAny>>,
         model: Option<&str>,
         tau_ext: Option<&Bound<'py, PyAny>>,
-        threshold: f64,
-        damping: f64,
+        #[pyo3(from_py_with = named::threshold)] threshold: f64,
+        #[pyo3(from_py_with = named::damping)] damping: Option<f64>,
     ) -> PyResult<PyConstrainedTorques> {
-        let (held, regularisation) = (self.held(&constraints)?, regularisation(threshold, damping)?);
+        let (held, regularisation) =
+            (self.held(&constraints)?, regularisation(threshold, damping.unwrap_or_default())?);
         let sharing = Distribution::read(self, &held, passive, torque_weights, multiplier_weights, wanted)?;
         let read = |w: &mut Workspace| {
             self.motion_of(w, [q, qd, qdd], [theta, thetad, thetadd])?;
@@ -236,10 +239,11 @@ impl PyRobot {
         constraints: Held<'py>,
         release: bool,
         model: Option<&str>,
-        threshold: f64,
-        damping: f64,
+        #[pyo3(from_py_with = named::threshold)] threshold: f64,
+        #[pyo3(from_py_with = named::damping)] damping: Option<f64>,
     ) -> PyResult<PyImpact> {
-        let (held, regularisation) = (self.held(&constraints)?, regularisation(threshold, damping)?);
+        let (held, regularisation) =
+            (self.held(&constraints)?, regularisation(threshold, damping.unwrap_or_default())?);
         let read = |w: &mut Workspace| self.motion(w, q, qd, thetad);
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             let [qd, thetad, gears, forces @ ..] = out else { return Ok(()) };

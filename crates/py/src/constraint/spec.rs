@@ -3,6 +3,7 @@
 use crate::arguments::choice;
 use crate::arrays::read_rows;
 use crate::errors;
+use crate::named;
 use crate::operational::direction;
 use crate::robot::PyRobot;
 use gyroflex::dynamics::{Anchor, Constraint, Contact, Directions, Frame, Hold};
@@ -77,17 +78,17 @@ impl PyConstraint {
     #[expect(clippy::too_many_arguments, reason = "most of them may be left out")]
     fn frame(
         link: String,
-        xyz: [f64; 3],
-        rpy: [f64; 3],
+        #[pyo3(from_py_with = named::xyz)] xyz: [f64; 3],
+        #[pyo3(from_py_with = named::rpy)] rpy: [f64; 3],
         to: Option<String>,
-        at_xyz: Option<[f64; 3]>,
-        at_rpy: Option<[f64; 3]>,
+        #[pyo3(from_py_with = named::at_xyz)] at_xyz: Option<[f64; 3]>,
+        #[pyo3(from_py_with = named::at_rpy)] at_rpy: Option<[f64; 3]>,
         at: Option<&Bound<'_, PyAny>>,
         directions: Option<&Bound<'_, PyAny>>,
-        stabilisation: f64,
+        #[pyo3(from_py_with = named::stabilisation)] stabilisation: f64,
         contact: Option<&str>,
-        restitution: f64,
-        slip: Option<[f64; 3]>,
+        #[pyo3(from_py_with = named::restitution)] restitution: f64,
+        #[pyo3(from_py_with = named::slip)] slip: Option<[f64; 3]>,
     ) -> PyResult<Self> {
         let directions = set_of(directions)?;
         let at = match at {
@@ -118,7 +119,13 @@ impl PyConstraint {
     ///     How fast errors of position and velocity are drawn back, critically damped [rad/s]; 0 leaves them.
     #[staticmethod]
     #[pyo3(signature = (joint, follows, *, ratio=1.0, offset=0.0, stabilisation=0.0))]
-    fn joints(joint: String, follows: String, ratio: f64, offset: f64, stabilisation: f64) -> PyResult<Self> {
+    fn joints(
+        joint: String,
+        follows: String,
+        #[pyo3(from_py_with = named::ratio)] ratio: f64,
+        #[pyo3(from_py_with = named::offset)] offset: f64,
+        #[pyo3(from_py_with = named::stabilisation)] stabilisation: f64,
+    ) -> PyResult<Self> {
         if joint == follows {
             let remedy = "name the joint that it follows";
             return Err(errors::argument("follows", format!("the joint `{joint}` follows itself"), remedy));

@@ -7,6 +7,7 @@ pub(crate) use model::{PyLinearization, PyMode};
 pub(crate) use response::PyFrequencyResponse;
 
 use crate::batch::{Row, rows};
+use crate::named;
 use crate::robot::PyRobot;
 use crate::{arguments, errors};
 use gyroflex_sim::Error;
@@ -124,9 +125,9 @@ impl PyRobot {
         py: Python<'py>,
         joint: &str,
         q: Argument<'_, 'py>,
-        start: Option<f64>,
-        stop: Option<f64>,
-        points: usize,
+        #[pyo3(from_py_with = named::start)] start: Option<f64>,
+        #[pyo3(from_py_with = named::stop)] stop: Option<f64>,
+        #[pyo3(from_py_with = named::points)] points: usize,
         model: Option<&str>,
         friction: &str,
     ) -> PyResult<PyFrequencyResponse> {
@@ -238,7 +239,7 @@ impl PyRobot {
         self.layout.motors("thetad", thetad, elastic, &mut state.thetad)?;
         let mut torques = vec![0.0; nv];
         let Some(tau) = tau else {
-            return Err(errors::argument("tau", "it is missing", "give the motor torques, zeros for none"));
+            return Err(errors::missing_torques("tau"));
         };
         self.layout.forces("tau", tau, &mut torques)?;
         linearizer.point(state, torques).map_err(errors::raise)

@@ -4,6 +4,7 @@ use super::{entry, length};
 use crate::arrays::{Complexes, check_result, complexes};
 use crate::batch::array;
 use crate::errors;
+use crate::named;
 use gyroflex_sim::linearize::{Linearization, Matrices, ModeKind, NaturalMode, natural_modes, zero_order_hold_of};
 use numpy::Complex64;
 use pyo3::prelude::*;
@@ -158,7 +159,7 @@ impl PyLinearization {
     /// ----------
     /// step
     ///     Sampling time [s].
-    fn zero_order_hold(&self, py: Python<'_>, step: f64) -> PyResult<Self> {
+    fn zero_order_hold(&self, py: Python<'_>, #[pyo3(from_py_with = named::step)] step: f64) -> PyResult<Self> {
         if self.step().is_some() {
             return Err(errors::argument(
                 "self",
