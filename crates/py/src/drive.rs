@@ -5,7 +5,7 @@ use crate::overrides::{self, overrides};
 use crate::robot::PyRobot;
 use crate::{errors, named};
 use gyroflex::model::{DriveSpec, SpringSpec, TransmissionSpec};
-use gyroflex_sim::load::{LoadOptions, URDF_TEXT, load, load_urdf_text};
+use gyroflex_sim::load::{LoadOptions, URDF_TEXT, YAML_TEXT, load, load_named_texts};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 use std::path::PathBuf;
@@ -14,8 +14,8 @@ use std::path::PathBuf;
 #[derive(Clone, Debug)]
 pub(crate) enum Origin {
     File(PathBuf),
-    /// A URDF and the drives YAML, if any.
-    Text(String, Option<String>),
+    /// What the URDF is called, its text, and the drives YAML, if any.
+    Text(String, String, Option<String>),
 }
 
 impl Origin {
@@ -23,7 +23,10 @@ impl Origin {
     pub(crate) fn read(self, py: Python<'_>, options: LoadOptions) -> PyResult<PyRobot> {
         let robot = py.detach(|| match &self {
             Self::File(path) => load(path, &options),
-            Self::Text(urdf, drives) => load_urdf_text(urdf, URDF_TEXT, drives.as_deref(), &options),
+            Self::Text(name, urdf, drives) => {
+                let yaml = if drives.is_some() { YAML_TEXT } else { "the keys given" };
+                load_named_texts((name, urdf), (yaml, drives.as_deref()), &options)
+            }
         });
         PyRobot::new(py, robot.map_err(errors::raise)?, self, options)
     }
@@ -140,12 +143,13 @@ impl PyRobot {
         };
         options.overrides.extend(&overrides(set)?);
         let origin = match urdf.to_str() {
-            Some(text) if text.contains('<') => Origin::Text(text.to_owned(), yaml),
+            Some(text) if text.contains('<') => Origin::Text(URDF_TEXT.to_owned(), text.to_owned(), yaml),
             _ if yaml.is_none() => Origin::File(urdf),
             _ => {
                 let text = std::fs::read_to_string(&urdf);
                 let refuse = |e: std::io::Error| errors::file(&urdf, format!("cannot be read: {e}"), "check the path");
-                Origin::Text(text.map_err(refuse)?, yaml)
+                let name = urdf.file_name().unwrap_or(urdf.as_os_str()).to_string_lossy().into_owned();
+                Origin::Text(name, text.map_err(refuse)?, yaml)
             }
         };
         origin.read(py, options)

@@ -113,7 +113,11 @@ def test_inertia_without_mass_is_refused() -> None:
             gyroflex.RobotBuilder("arm").link("base", **given)  # type: ignore[arg-type]
 
 
-def test_texts_are_named_as_such() -> None:
+def test_texts_are_named_as_such_and_files_by_their_names(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(URDF.replace('<mass value="0.6"/>', '<mass value="-0.6"/>'))
+    with pytest.raises(gyroflex.Error, match=r"^arm\.urdf.*slider"):
+        gyroflex.Robot.from_urdf(path, YAML)
     with pytest.raises(gyroflex.FormatError, match="^the URDF text:10: joint `joint`.*`nobody`"):
         gyroflex.Robot.from_builder(links().joint("joint", "base", "nobody"))
     with pytest.raises(gyroflex.ModelError, match="^the YAML text:7: joint `shoulder`, gear_ratio"):

@@ -148,8 +148,6 @@ def test_a_batch_is_offered_where_there_is_one(arm: gyroflex.Robot) -> None:
     for call in (arm.mass_matrix, arm.gravity_torques):
         with pytest.raises(gyroflex.ShapeError, match=r"but \(3,\) or \(batch, 3\) is expected"):
             call(np.zeros(4))
-    with pytest.raises(gyroflex.ShapeError, match=r"but \(3,\) is expected"):
-        arm.linearize(np.zeros(4))
 
 
 def test_roots_may_be_left_out_and_messages_say_so(arm_file: Path) -> None:

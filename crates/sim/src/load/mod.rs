@@ -101,30 +101,43 @@ pub fn load_from(files: &dyn FileSource, path: &Path, options: &LoadOptions) -> 
 /// Loads a URDF in memory, with the text of a robot YAML, whose `urdf` is not followed. Mesh files are not looked for.
 ///
 /// # Errors
-/// Like [`load`]; `file_name` (or [`URDF_TEXT`]) stands for the URDF, and [`YAML_TEXT`] for the YAML.
+/// Like [`load`]; `file_name` and `robot.yaml` stand for the files.
 pub fn load_urdf_text(
     text: &str,
     file_name: &str,
     drives: Option<&str>,
     options: &LoadOptions,
 ) -> Result<Robot, Error> {
-    let urdf = Urdf { text, path: Path::new(file_name), files: None };
-    let named;
-    let (drives, file) = match drives {
-        Some(drives) => (drives, YAML_TEXT.to_owned()),
+    load_named_texts((file_name, text), ("robot.yaml", drives), options)
+}
+
+/// Like [`load_urdf_text`], of a URDF and a robot YAML with the names that messages call them, such as [`URDF_TEXT`].
+///
+/// # Errors
+/// Like [`load`].
+pub fn load_named_texts(
+    (name, text): (&str, &str),
+    (drives_name, drives): (&str, Option<&str>),
+    options: &LoadOptions,
+) -> Result<Robot, Error> {
+    let urdf = Urdf { text, path: Path::new(name), files: None };
+    let stand_in;
+    let drives = match drives {
+        Some(drives) => drives,
         None if options.overrides.is_empty() => return assemble(&urdf, None, options),
         None => {
-            named = names_only(file_name);
-            (named.as_str(), file_name.to_owned())
+            stand_in = names_only(name);
+            &stand_in
         }
     };
+    let file = drives_name.to_owned();
     let yaml = yaml::parse_with(drives, &file, &options.overrides)?;
     assemble(&urdf, Some(&Drives { yaml: &yaml, text: drives, file }), options)
 }
 
 /// What messages call a URDF that is in no file.
 pub const URDF_TEXT: &str = "the URDF text";
-/// What messages call the YAML beside such a URDF.
+/// What messages call a YAML that is in no file.
 pub const YAML_TEXT: &str = "the YAML text";
 
 /// The file that a robot is loaded from; `None` if it is from texts.
