@@ -93,7 +93,7 @@ def dynamics(arm: gyroflex.Robot) -> dict[str, Call]:
         "constrained_forward_dynamics": {**motors, "tau": Z, **held, **load, "model": "complete"},
         "constrained_inverse_dynamics": {**motion, **held, **sharing, **load, "model": "complete"},
         "impact": {**velocity, **held, "release": False, "model": "complete"},
-        "constraint_motion": {"q": Z, "qd": Z, "constraints": held["constraints"]},
+        "constraint_motion": {"q": Z, "qd": Z, "constraints": held["constraints"], "out": None},
         "smoothness": {"model": "complete", "torque_derivatives": 0, "damping": 1.0},
         "elastic_inverse": {**at, **inverse, **load, "model": "complete"},
         "linearize": {**motors, "tau": Z, "outputs": ["motor_position"], **linear},

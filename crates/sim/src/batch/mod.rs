@@ -15,6 +15,7 @@ pub use rollout::{Rollout, Scheme, Trajectories, rollout};
 
 use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
+use bending::One;
 use gyroflex::model::SizeError;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -71,20 +72,22 @@ pub fn evaluate<F: Real>(
     }
     let rows_of = |index: usize| index * task..rows.min((index + 1) * task);
     if bends {
-        let one = |one: &mut bending::One, (index, mut out): (usize, Vec<&mut [F]>)| {
-            rows_of(index).enumerate().try_for_each(|(k, row)| {
-                one.load(given, row);
+        let run = |one: &mut One, (index, mut out): (usize, Vec<&mut [F]>)| {
+            for row in rows_of(index) {
                 rows::refuse_not_finite(&given, sizes, row..row + 1)?;
+                one.load(given, row);
                 one.run(algorithm)?;
-                for (i, (to, n)) in out.iter_mut().zip(&columns).enumerate() {
-                    let to = &mut to[k * n..][..*n];
+                for (i, (to, columns)) in out.iter_mut().zip(&columns).enumerate() {
+                    let to = &mut to[(row - index * task) * columns..][..*columns];
                     one.write(i, to);
-                    all_finite(to).then_some(()).ok_or_else(|| diverged(algorithm.names()[i], row))?;
+                    if !all_finite(to) {
+                        return Err(diverged(algorithm.names()[i], row));
+                    }
                 }
-                Ok(())
-            })
+            }
+            Ok(())
         };
-        return in_parallel(tasks, || bending::One::new(model), one);
+        return in_parallel(tasks, || One::new(model), run);
     }
     let records = model.cast::<F>();
     let model = &records.view();

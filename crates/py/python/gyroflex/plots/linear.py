@@ -27,8 +27,10 @@ def frequency_response(responses: FrequencyResponse | Iterable[FrequencyResponse
     labels
         What each is called, the joint's name unless given.
     """
-    single = isinstance(responses, FrequencyResponse) and responses.motor.ndim == 1
-    several = list(responses) if isinstance(responses, Iterable) and not single else [responses]
+    if isinstance(responses, FrequencyResponse):
+        several = [responses] if responses.motor.ndim == 1 else list(responses)
+    else:
+        several = list(responses) if isinstance(responses, Iterable) else [responses]
     for response in several:
         _checks.of_kind("responses", response, FrequencyResponse)
     if not several:
