@@ -1,6 +1,7 @@
 //! Arguments that PyO3 would refuse without their names: counts, numbers, points and lists of names.
 
 use crate::{arrays, errors};
+use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
@@ -42,6 +43,10 @@ fn count_or_none(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<usize>
 
 /// A number of any size; an integer beyond all floats is refused here, what is not finite by who knows what it is for.
 fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    // Of which NumPy would take the only entry, and say that it should not.
+    if value.cast::<PyUntypedArray>().is_ok_and(|array| array.ndim() > 0) {
+        return Err(errors::argument(name, "it is an array", "give one number"));
+    }
     value.extract::<f64>().map_err(|e| match too_large(value, e) {
         Ok(_) => errors::argument(name, "it is too large for a floating-point number", "give a smaller number"),
         Err(e) => e,

@@ -121,20 +121,21 @@ fn numbers_that_are_not_finite_are_named() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots").join(name).join("robot.yaml");
         let model = load(&path, &LoadOptions::default()).unwrap().model(Fidelity::Complete).unwrap();
         let (nv, rows) = (model.nv(), 301);
-        let [q, qd, mut tau] = [1, 2, 3].map(|seed| numbers(seed, rows * nv));
-        let mut out = vec![0.0; rows * nv];
-        let mut run = |q: &[f64], tau: &[f64]| {
-            let given = Given { q, qd: &qd, theta: q, thetad: &qd, tau, ..Given::default() };
-            evaluate(&model, &Algorithm::ForwardDynamics, rows, given, &mut [&mut out]).map_err(|e| e.to_string())
+        let [q, mut qd, mut tau] = [1, 2, 3].map(|seed| numbers(seed, rows * nv));
+        let [mut qdd, mut thetadd] = [0; 2].map(|_| vec![0.0; rows * nv]);
+        let mut run = |qd: &[f64], tau: &[f64]| {
+            let given = Given { q: &q, qd, theta: &q, thetad: qd, tau, ..Given::default() };
+            let out = &mut [&mut qdd[..], &mut thetadd];
+            evaluate(&model, &Algorithm::ForwardDynamics, rows, given, out).map_err(|e| e.to_string())
         };
-        run(&q, &tau).unwrap();
+        run(&qd, &tau).unwrap();
         tau[150 * nv + 1] = f64::NAN;
-        assert!(run(&q, &tau).unwrap_err().contains("tau: entry 1 of row 150 is NaN"));
+        assert!(run(&qd, &tau).unwrap_err().contains("tau: entry 1 of row 150 is NaN"));
         assert!(
-            run(&q, &[0.0, f64::INFINITY, 0.0, 0.0, 0.0, 0.0][..nv]).unwrap_err().contains("entry 1 of row 0 is inf")
+            run(&qd, &[0.0, f64::INFINITY, 0.0, 0.0, 0.0, 0.0][..nv]).unwrap_err().contains("entry 1 of row 0 is inf")
         );
         // Finite numbers whose result is none.
-        tau[150 * nv + 1] = 1e308;
-        assert!(run(&q, &tau).unwrap_err().contains("the result `qdd[150]` is not finite"));
+        (tau[150 * nv + 1], qd[150 * nv + 1]) = (0.0, 1e200);
+        assert!(run(&qd, &tau).unwrap_err().contains("dd[150]` is not finite"));
     }
 }

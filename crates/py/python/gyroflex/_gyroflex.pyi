@@ -1,3 +1,5 @@
+# Arrays of float32 are array-like, too: which overload is meant is the first that fits.
+# mypy: disable-error-code="overload-overlap"
 """The compiled half of the package; `gyroflex` exports what users need of it."""
 
 import os
