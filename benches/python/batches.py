@@ -1,6 +1,6 @@
 """What one call costs, and how many states a second batches take: gyroflex beside Pinocchio and MuJoCo.
 
-Needs `pip install gyroflex pin mujoco`; what is not installed is left out. Run it once a number of cores:
+Needs `pip install ./crates/py pin mujoco`; what is not installed is left out. Run it once a number of cores:
 
     RAYON_NUM_THREADS=1 python benches/python/batches.py
     RAYON_NUM_THREADS=2 python benches/python/batches.py

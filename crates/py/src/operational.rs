@@ -56,7 +56,7 @@ impl PyRobot {
         #[pyo3(from_py_with = named::threshold)] threshold: f64,
         model: Option<&str>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let link = self.link(frame)?;
+        let link = self.link("frame", frame)?;
         let Some(body) = link.body else {
             return Err(errors::argument("frame", format!("the link `{frame}` does not move"), "name a moving link"));
         };

@@ -326,18 +326,18 @@ impl PyRobot {
     }
 
     /// The link of that name.
-    pub(crate) fn link(&self, frame: &str) -> PyResult<&Link> {
+    pub(crate) fn link(&self, argument: &str, name: &str) -> PyResult<&Link> {
         let links = &self.robot.links;
-        links.iter().find(|l| l.name == frame).ok_or_else(|| {
-            let near = nearest(frame, links.iter().map(|l| l.name.as_str())).unwrap_or_default();
-            let problem = format!("the robot has no link `{frame}`");
-            errors::argument("frame", problem, format!("the nearest known one is `{near}`"))
+        links.iter().find(|l| l.name == name).ok_or_else(|| {
+            let near = nearest(name, links.iter().map(|l| l.name.as_str())).unwrap_or_default();
+            let problem = format!("the robot has no link `{name}`");
+            errors::argument(argument, problem, format!("the nearest known one is `{near}`"))
         })
     }
 
     /// The frame of the link of that name.
     pub(crate) fn frame(&self, name: &str) -> PyResult<LinkFrame> {
-        let link = self.link(name)?;
+        let link = self.link("frame", name)?;
         let index = self.robot.links.iter().position(|l| l.name == link.name).unwrap_or_default();
         Ok(LinkFrame::new(&self.robot, index))
     }

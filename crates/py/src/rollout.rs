@@ -1,6 +1,6 @@
 //! Motions of many copies of a robot at once.
 
-use crate::arguments::choice;
+use crate::arguments::{Layout, choice};
 use crate::arrays::{numbers, text_of};
 use crate::batch::{self, Finite, Float, Need, Numbers, all_given, all_single, columns};
 use crate::errors;
@@ -126,7 +126,10 @@ impl PyRobot {
         let rows = batch_of(arrays)?;
         let given: Vec<(&str, Numbers<'py, F>)> = arrays
             .iter()
-            .map(|(name, array)| Ok((*name, columns(&self.layout, name, array, Finite::Now)?)))
+            .map(|(name, array)| {
+                let several = (*name == "tau").then_some("[batch,] steps");
+                Ok((*name, columns(&Layout { several, ..self.layout }, name, array, Finite::Now)?))
+            })
             .collect::<PyResult<_>>()?;
         let (nq, nv, n) = (self.layout.nq, self.layout.nv, rows.unwrap_or(1));
         let still = vec![F::from_f64(0.0); nv];

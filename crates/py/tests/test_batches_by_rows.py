@@ -183,3 +183,22 @@ def test_what_differs_from_pose_to_pose_is_asked_for_one_by_one(arm: gyroflex.Ro
     q[1, 2] = np.nan
     with pytest.raises(gyroflex.NotFiniteError, match=r"entry \[1, 2\]"):
         arm.linearize(q)
+
+
+def test_messages_name_the_argument_and_the_entry(arm: gyroflex.Robot) -> None:
+    zero, held = np.zeros(3), [Constraint.frame("tooool")]
+    torques = np.zeros((4, 5, 3))
+    torques[2, 1, 0] = np.inf
+    start = {"q0": zero, "qd0": zero, "theta0": zero, "thetad0": zero, "dt": 1e-4}
+    for match, call in (
+        (r"argument `tau`, entry \[2, 1, 0\]", lambda: arm.rollout(**start, tau=torques)),
+        (r"\(3,\) or \(\[batch,\] steps, 3\) is expected", lambda: arm.rollout(**start, tau=np.zeros((4, 5, 2)))),
+        ("argument `link`.*no link `tooool`", lambda: arm.constraint_motion(zero, zero, constraints=held)),
+        ("argument `to`", lambda: arm.impact(zero, zero, zero, constraints=[Constraint.frame("tool", to="bas")])),
+        ("argument `points`", lambda: arm.frequency_response("elbow", points=1)),
+        ("argument `start`", lambda: arm.frequency_response("elbow", start=-1.0)),
+        ("nearest known one is `motor_position`", lambda: arm.linearize(outputs=["motor_positio"])),
+        (r"row 1: .*", lambda: arm.linearize(np.zeros((3, 3)), tau=np.array([[0, 0, 0], [1e9, 1e9, 1e9], [0, 0, 0]]))),
+    ):
+        with pytest.raises(gyroflex.Error, match=match):
+            call()

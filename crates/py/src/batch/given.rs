@@ -144,7 +144,8 @@ pub(crate) fn columns<'py, F: Float>(
     let root = if layout.floating && rootless { ROOT } else { 0 };
     let left_out = [(0, 0), (root, 0), (0, layout.modes), (root, layout.modes)];
     let Some((lead, trail)) = left_out.into_iter().find(|(lead, trail)| lead + given + trail == n) else {
-        let problem = format!("an array of shape {} is given, but ({n},) or (batch, {n}) is expected", text_of(shape));
+        let axes = layout.several.unwrap_or("batch");
+        let problem = format!("an array of shape {} is given, but ({n},) or ({axes}, {n}) is expected", text_of(shape));
         return Err(errors::shape(name, problem, "give one entry per coordinate in the last axis"));
     };
     let tidy = py.import("numpy")?.call_method1("ascontiguousarray", (array, numpy::dtype::<F>(py)))?;
@@ -154,8 +155,7 @@ pub(crate) fn columns<'py, F: Float>(
     let copied = lead + trail > 0 || quaternions;
     let look = copied || finite == Finite::Now;
     if let Some(i) = all.iter().position(|x| look && !x.is_finite()) {
-        let index = if shape.len() > 1 { format!("[{}, {}]", i / given, i % given) } else { i.to_string() };
-        return Err(errors::not_finite(name, index, all[i].into()));
+        return Err(errors::not_finite(name, index_of(shape, i), all[i].into()));
     }
     if !copied {
         return Ok(Numbers::Array(array));
@@ -173,6 +173,16 @@ pub(crate) fn columns<'py, F: Float>(
         row[3..7].iter_mut().zip(quaternion).for_each(|(to, from)| *to = F::from_f64(from));
     }
     Ok(Numbers::Own(all))
+}
+
+/// Where entry `i` of an array of that shape is, as Python says it.
+fn index_of(shape: &[usize], i: usize) -> String {
+    if shape.len() < 2 {
+        return i.to_string();
+    }
+    let strides = (0..shape.len()).map(|axis| shape[axis + 1..].iter().product::<usize>());
+    let index = strides.zip(shape).map(|(stride, n)| (i / stride.max(1) % n.max(&1)).to_string());
+    format!("[{}]", index.collect::<Vec<_>>().join(", "))
 }
 
 /// Refuses a call that lacks an array.

@@ -183,13 +183,13 @@ impl PyConstraint {
     pub(super) fn resolve(&self, robot: &PyRobot) -> PyResult<Constraint<f64>> {
         let hold = match &self.hold {
             Named::Frame { link, placement, to, at, directions } => {
-                let on = robot.link(link)?;
+                let on = robot.link("link", link)?;
                 let Some(body) = on.body else {
                     let remedy = "name a moving link; what is held to it is given by `to`";
                     return Err(errors::argument("link", format!("the link `{link}` does not move"), remedy));
                 };
                 let frame = Frame { body, placement: placement.after(on.placement) };
-                let anchor = match to.as_ref().map(|to| robot.link(to)).transpose()? {
+                let anchor = match to.as_ref().map(|to| robot.link("to", to)).transpose()? {
                     None => Anchor { body: None, placement: *at },
                     Some(to) => Anchor { body: to.body, placement: at.after(to.placement) },
                 };

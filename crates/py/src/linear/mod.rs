@@ -146,7 +146,8 @@ impl PyRobot {
                 frequency_response(linearizer, &point, joint, sweep)
             })
         });
-        responses.map(|all| PyFrequencyResponse::new(all, batch)).map_err(about("start, stop, points"))
+        let blamed = |e: Error| about(if e.element == "points" { "points" } else { "start" })(e);
+        responses.map(|all| PyFrequencyResponse::new(all, batch)).map_err(blamed)
     }
 }
 
@@ -259,7 +260,9 @@ fn read_outputs(value: Argument<'_, '_>) -> PyResult<Vec<Output>> {
             )
         })?,
     };
-    names.iter().map(|name| Output::parse(name)).collect::<Result<_, _>>().map_err(about("outputs"))
+    // Python's names have no hyphens.
+    let parse = |name: &String| Output::parse(name).map_err(|e| Error { remedy: e.remedy.replace('-', "_"), ..e });
+    names.iter().map(parse).collect::<Result<_, _>>().map_err(about("outputs"))
 }
 
 /// What an error of the library about its arguments is called here.

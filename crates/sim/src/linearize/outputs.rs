@@ -84,7 +84,7 @@ pub(super) fn rows(
     outputs: &[Output],
 ) -> Result<Rows, Error> {
     if outputs.is_empty() {
-        return Err(fault("none is asked for".to_owned(), "name at least one, e.g. `motor-position`".to_owned()));
+        return Err(fault("none is asked for".to_owned(), "name at least one".to_owned()));
     }
     let (half, joints) = (of.layout.positions(), of.layout.inputs().to_vec());
     let count = |o: &Output| if matches!(o, Output::Pose(_)) { POSE.len() } else { joints.len() };

@@ -169,7 +169,8 @@ fn frequencies(sweep: Sweep, modes: &[NaturalMode]) -> Result<Vec<f64>, Error> {
     }
     if !(2..=MOST_POINTS).contains(&points) {
         let remedy = format!("give from two to {MOST_POINTS}");
-        return Err(fault(&format!("{points} points are asked for"), &remedy));
+        let fault = fault(&format!("{points} frequencies are asked for"), &remedy);
+        return Err(Error { element: "points".to_owned(), ..fault });
     }
     Ok(logarithmic(from, to, points).collect())
 }
