@@ -162,7 +162,7 @@ def test_bad_arguments_are_named(arm: gyroflex.Robot) -> None:
 
     q = np.zeros(arm.nq)
     for named, words in [
-        ({"outputs": ["motor_positon"]}, ("outputs", "motor-position")),
+        ({"outputs": ["motor_positon"]}, ("outputs", "motor_position")),
         ({"outputs": []}, ("outputs", "at least one")),
         ({"outputs": [1, 2]}, ("outputs", "names")),
         ({"outputs": "pose:tol"}, ("outputs", "tool")),
