@@ -119,8 +119,18 @@ impl Layout {
         }
     }
 
+    /// Refuses an array over motors or forces of which a floating root's six entries could be missing or just as many modes.
+    pub(crate) fn refuse_two_readings(&self, name: &str, given: usize) -> PyResult<()> {
+        if !(self.floating && self.modes == ROOT && given + ROOT == self.nv) {
+            return Ok(());
+        }
+        let problem = format!("{given} entries are given, and the root's six can be missing or the modes");
+        Err(errors::shape(name, problem, format!("give all {}, or the joints alone", self.nv)))
+    }
+
     /// Motor torques or generalised forces; a floating root's six may be left out.
     pub(crate) fn forces(&self, name: &str, value: &Bound<'_, PyAny>, out: &mut [f64]) -> PyResult<()> {
+        self.refuse_two_readings(name, value.len().unwrap_or_default())?;
         let skip = if self.floating { ROOT } else { 0 };
         arrays::read_fitting(name, value, self.given(value, out), self.fit(skip, VELOCITIES))
     }

@@ -1,6 +1,6 @@
 //! Energies, and how a frame moves with the joints.
 
-use crate::arrays::shaped;
+use crate::arrays::{check_result, shaped};
 use crate::batch::Need;
 use crate::errors;
 use crate::robot::PyRobot;
@@ -45,6 +45,9 @@ impl PyRobot {
                 self.layout.or_batch().state(w, q, qd, theta, thetad)?;
                 let Workspace { dynamics, q, qd, theta, thetad, .. } = w;
                 let e = dynamics.energy(State { q, qd, theta, thetad }).map_err(errors::raise)?;
+                for (name, energy) in [("kinetic", e.kinetic), ("gravity", e.gravity), ("elastic", e.elastic)] {
+                    check_result(name, &[energy])?;
+                }
                 Ok((e.kinetic, e.gravity, e.elastic).into_pyobject(py)?.into_any())
             })
         };

@@ -37,8 +37,8 @@ use std::path::PathBuf;
 /// Where a method takes `out`, its arrays may also be of shape `(batch, n)`, any of them, and the results lead with that axis: the states
 /// are computed side by side in lanes and on all cores (`RAYON_NUM_THREADS` limits them), with the interpreter released, and agree with
 /// single calls to rounding. If all arrays are float32, so are the computation and the results; otherwise float64. `out` is an array, or a
-/// tuple of them in C order, that takes the results. Derivatives, the regressor, and everything of robots whose links bend are computed
-/// row by row, in float64.
+/// tuple of them in C order, that takes the results; after an error it holds anything. Derivatives, the regressor and what has to do with
+/// constraints come in float64, row by row; so is everything of robots whose links bend computed.
 ///
 /// `model` is one of `complete`, `reduced`, `rigid`, `rigid_reflected`; the default is the one of the robot's file.
 #[pyclass(name = "Robot", module = "gyroflex", frozen)]
@@ -337,9 +337,9 @@ impl PyRobot {
 
     /// The frame of the link of that name.
     pub(crate) fn frame(&self, name: &str) -> PyResult<LinkFrame> {
-        let link = self.link("frame", name)?;
-        let index = self.robot.links.iter().position(|l| l.name == link.name).unwrap_or_default();
-        Ok(LinkFrame::new(&self.robot, index))
+        self.link("frame", name)?;
+        let index = self.robot.links.iter().position(|l| l.name == name);
+        Ok(LinkFrame::new(&self.robot, index.unwrap_or_default()))
     }
 
     pub(crate) fn with<R>(&self, model: Option<&str>, call: impl FnOnce(&mut Workspace) -> PyResult<R>) -> PyResult<R> {

@@ -7,6 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import gyroflex
+import gyroflex.plots
+import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from batches import CALLS, agree, batch_of, results
@@ -153,6 +156,10 @@ def test_eigenvalues_are_those_of_the_matrix(arm: gyroflex.Robot) -> None:
     for a, b in zip(found, expected, strict=True):
         # Double eigenvalues at zero have the root of rounding for an error.
         assert all(np.abs(b - x).min() <= 1e-5 * np.abs(b).max() for x in a)
+        assert all(np.abs(a - x).min() <= 1e-5 * np.abs(b).max() for x in b)
+        pairs = a[np.abs(a.imag) > 1e-5 * np.abs(b).max()]
+        np.testing.assert_array_equal(pairs[::2], pairs[1::2].conj())
+        assert (pairs[1::2].imag > 0).all()
 
 
 def test_frequency_responses_of_many_poses(arm: gyroflex.Robot) -> None:
@@ -169,9 +176,9 @@ def test_frequency_responses_of_many_poses(arm: gyroflex.Robot) -> None:
 def test_what_differs_from_pose_to_pose_is_asked_for_one_by_one(arm: gyroflex.Robot) -> None:
     q = batch_of(arm, 3)["q"]
     linear = arm.linearize(q)
-    with pytest.raises(gyroflex.ArgumentError, match=r"(?s)these are 3 models.*one.modes\(\)"):
+    with pytest.raises(gyroflex.ArgumentError, match=r"(?s)batch of 3.*one.modes\(\)"):
         linear.modes()
-    with pytest.raises(gyroflex.ArgumentError, match="these are 3 models"):
+    with pytest.raises(gyroflex.ArgumentError, match="(?s)argument `q`: several poses.*one.modes"):
         arm.modes(q)
     assert [len(one.modes()) for one in linear] == [len(arm.modes(pose)) for pose in q]
     with pytest.raises(gyroflex.ArgumentError, match="one.resonances for one in"):
@@ -180,6 +187,11 @@ def test_what_differs_from_pose_to_pose_is_asked_for_one_by_one(arm: gyroflex.Ro
         linear[3]
     with pytest.raises(TypeError, match="single linear model"):
         len(linear[-1])
+    assert linear and linear[0]
+    with pytest.raises(gyroflex.ArgumentError, match="batch of 1"):
+        arm.linearize(q[:1]).modes()
+    with pytest.raises(gyroflex.ShapeError, match="a batch of nothing"):
+        arm.linearize(q[:0])
     q[1, 2] = np.nan
     with pytest.raises(gyroflex.NotFiniteError, match=r"entry \[1, 2\]"):
         arm.linearize(q)
@@ -189,6 +201,7 @@ def test_messages_name_the_argument_and_the_entry(arm: gyroflex.Robot) -> None:
     zero, held = np.zeros(3), [Constraint.frame("tooool")]
     torques = np.zeros((4, 5, 3))
     torques[2, 1, 0] = np.inf
+    many = np.zeros((2, 3))
     start = {"q0": zero, "qd0": zero, "theta0": zero, "thetad0": zero, "dt": 1e-4}
     for match, call in (
         (r"argument `tau`, entry \[2, 1, 0\]", lambda: arm.rollout(**start, tau=torques)),
@@ -197,8 +210,44 @@ def test_messages_name_the_argument_and_the_entry(arm: gyroflex.Robot) -> None:
         ("argument `to`", lambda: arm.impact(zero, zero, zero, constraints=[Constraint.frame("tool", to="bas")])),
         ("argument `points`", lambda: arm.frequency_response("elbow", points=1)),
         ("argument `start`", lambda: arm.frequency_response("elbow", start=-1.0)),
+        ("argument `stop`", lambda: arm.frequency_response("elbow", start=1.0, stop=np.nan)),
+        ("argument `outputs`: none is asked for", lambda: arm.linearize(np.zeros((2, 3)), outputs=[])),
+        (r"argument `qd`: an array of shape \(\) is given beside", lambda: arm.bias(np.zeros((2, 3)), 0.0, zero)),
+        ("argument `out`: it shares memory with an argument", lambda: arm.bias(many, many, zero, out=(many, many.copy()))),
+        ("kinetic", lambda: arm.energy(zero, zero + 1e200, zero, zero)),
         ("nearest known one is `motor_position`", lambda: arm.linearize(outputs=["motor_positio"])),
         (r"row 1: .*", lambda: arm.linearize(np.zeros((3, 3)), tau=np.array([[0, 0, 0], [1e9, 1e9, 1e9], [0, 0, 0]]))),
     ):
         with pytest.raises(gyroflex.Error, match=match):
             call()
+
+
+def test_a_root_and_as_many_modes_are_not_taken_for_each_other(tmp_path: Path) -> None:
+    folder = PROJECT / "robots/book_two_link"
+    urdf = (folder / "book_two_link.urdf").read_text().replace('<link name="base">', BASE)
+    (tmp_path / "book_two_link.urdf").write_text(urdf)
+    (tmp_path / "robot.yaml").write_text((folder / "elastic.yaml").read_text().replace("modes: 2", "modes: 3"))
+    arm = gyroflex.Robot.load(tmp_path / "robot.yaml", floating=True)
+    assert (arm.nv, len(arm.mode_names)) == (14, 6)
+    assert arm.gravity_torques(np.array([0, 0, 0, 0, 0, 0, 1, 0, 0])).shape == (14,)
+    q, qd, eight = np.zeros(15), np.zeros(14), np.zeros(8)
+    q[6] = 1.0
+    for state in (q, np.tile(q, (2, 1))):
+        arm.forward_dynamics(state, qd, np.zeros(2), np.zeros(2), np.zeros(2))
+        with pytest.raises(gyroflex.ShapeError, match="`theta`.*the root's six can be missing or the modes"):
+            arm.forward_dynamics(state, qd, eight, eight, eight)
+
+
+BASE = """<link name="base"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"""
+
+
+def test_plots_take_batches_apart(arm: gyroflex.Robot) -> None:
+    matplotlib.use("Agg")
+    responses = arm.frequency_response("elbow", np.zeros((3, 3)), points=20)
+    try:
+        for given in (responses, [responses]):
+            magnitude, _ = gyroflex.plots.frequency_response(given)
+            assert [line.get_label() for line in magnitude.lines[::2]] == [f"elbow[{k}], motor" for k in range(3)]
+            assert all(len(line.get_xdata()) == 20 for line in magnitude.lines)
+    finally:
+        plt.close("all")

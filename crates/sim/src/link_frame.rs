@@ -21,6 +21,9 @@ pub struct LinkFrame {
 
 impl LinkFrame {
     /// The frame of entry `link` of [`Robot::links`].
+    ///
+    /// # Panics
+    /// If there is no such entry.
     pub fn new(robot: &Robot, link: usize) -> Self {
         let section = CrossSection::of_link(robot, link);
         let link = &robot.links[link];

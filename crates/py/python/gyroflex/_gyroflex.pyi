@@ -102,23 +102,23 @@ class Linearization:
 
     @property
     def q(self) -> _Vector:
-        """Joint positions at the operating point, shape `([batch,] nq,)`."""
+        """Joint positions at the operating point, shape `([batch,] nq)`."""
 
     @property
     def qd(self) -> _Vector:
-        """Joint velocities there, shape `([batch,] nv,)`."""
+        """Joint velocities there, shape `([batch,] nv)`."""
 
     @property
     def theta(self) -> _Vector:
-        """Motor positions there, seen from the link side, shape `([batch,] nv,)`."""
+        """Motor positions there, seen from the link side, shape `([batch,] nv)`."""
 
     @property
     def thetad(self) -> _Vector:
-        """Motor velocities there, seen from the link side, shape `([batch,] nv,)`."""
+        """Motor velocities there, seen from the link side, shape `([batch,] nv)`."""
 
     @property
     def tau(self) -> _Vector:
-        """Motor torques there, seen from the link side, shape `([batch,] nv,)`."""
+        """Motor torques there, seen from the link side, shape `([batch,] nv)`."""
 
     @property
     def step(self) -> float | None:
@@ -128,6 +128,7 @@ class Linearization:
     def eigenvalues(self) -> _Complexes:
         """Eigenvalues of `A`, by size, shape `([batch,] states)`."""
 
+    def __bool__(self) -> Literal[True]: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> Linearization: ...
     def __iter__(self) -> Iterator[Linearization]: ...
@@ -196,6 +197,7 @@ class FrequencyResponse:
     def antiresonances(self) -> _Vector:
         """Frequencies of the dips of the motor's response [Hz]; not of a batch."""
 
+    def __bool__(self) -> Literal[True]: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> FrequencyResponse: ...
     def __iter__(self) -> Iterator[FrequencyResponse]: ...
@@ -296,15 +298,15 @@ class ConstrainedMotion:
 
     @property
     def qdd(self) -> _Vector:
-        """Accelerations of the joints, shape `([batch,] nv,)`."""
+        """Accelerations of the joints, shape `([batch,] nv)`."""
 
     @property
     def thetadd(self) -> _Vector:
-        """Accelerations of the motors seen from the link side, shape `([batch,] nv,)`."""
+        """Accelerations of the motors seen from the link side, shape `([batch,] nv)`."""
 
     @property
     def tau_j(self) -> _Vector:
-        """Torques that the transmissions exert on the joints, shape `([batch,] nv,)` [N m or N]."""
+        """Torques that the transmissions exert on the joints, shape `([batch,] nv)` [N m or N]."""
 
     @property
     def multipliers(self) -> _Vector:
@@ -332,11 +334,11 @@ class ConstrainedTorques:
 
     @property
     def tau_j(self) -> _Vector:
-        """Torques that the transmissions must exert on the joints, shape `([batch,] nv,)` [N m or N]."""
+        """Torques that the transmissions must exert on the joints, shape `([batch,] nv)` [N m or N]."""
 
     @property
     def tau(self) -> _Vector:
-        """Torques that the motors must exert, seen from the link side, shape `([batch,] nv,)` [N m or N]."""
+        """Torques that the motors must exert, seen from the link side, shape `([batch,] nv)` [N m or N]."""
 
     @property
     def multipliers(self) -> _Vector:
@@ -360,15 +362,15 @@ class Impact:
 
     @property
     def qd(self) -> _Vector:
-        """Velocities of the joints afterwards, shape `([batch,] nv,)`."""
+        """Velocities of the joints afterwards, shape `([batch,] nv)`."""
 
     @property
     def thetad(self) -> _Vector:
-        """Velocities of the motors afterwards seen from the link side, shape `([batch,] nv,)`."""
+        """Velocities of the motors afterwards seen from the link side, shape `([batch,] nv)`."""
 
     @property
     def gears(self) -> _Vector:
-        """Impulses that rigid gears exert on their joints, shape `([batch,] nv,)` [N m s or N s]."""
+        """Impulses that rigid gears exert on their joints, shape `([batch,] nv)` [N m s or N s]."""
 
     @property
     def multipliers(self) -> _Vector:
@@ -423,7 +425,7 @@ class Robot:
     """A robot with its drives, loaded from files.
 
     Where a method takes `out`, its arrays may also be of shape `(batch, n)`, any of them; results lead with that axis. All in float32
-    gives float32, else float64; derivatives, the regressor, and robots with links that bend are in float64 always.
+    gives float32, else float64; derivatives, the regressor and what has to do with constraints are in float64 always.
     """
 
     @staticmethod
@@ -925,7 +927,7 @@ class Robot:
         model: _Model | None = None,
         friction: _Friction = "all",
     ) -> Linearization:
-        """Linear model about the equilibrium at `q`, about that under `tau`, or, with `qd`, about any state."""
+        """Linear model about the equilibrium at `q`, about that under `tau`, or, with `qd`, about any state; of batches one for each row."""
 
     def modes(
         self,
@@ -947,7 +949,7 @@ class Robot:
         model: _Model | None = None,
         friction: _Friction = "all",
     ) -> FrequencyResponse:
-        """From the torque of a joint's motor to the positions of motor and link, about the equilibrium at a pose."""
+        """From the torque of a joint's motor to the positions of motor and link, about the equilibrium at a pose, or at each of a batch."""
 
     def analyze(
         self,

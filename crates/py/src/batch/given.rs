@@ -24,8 +24,8 @@ pub(crate) enum Need {
 pub(crate) type Argument<'a, 'py> = (&'static str, Option<&'a Bound<'py, PyAny>>, Need);
 
 /// A number of NumPy's that lanes compute with.
-pub(crate) trait Float: Real + Element + Into<f64> {}
-impl<F: Real + Element + Into<f64>> Float for F {}
+pub(crate) trait Float: Real + Element {}
+impl<F: Real + Element> Float for F {}
 
 /// The arrays of a call that is not about one state in float64.
 pub(super) struct Batch<'py> {
@@ -45,6 +45,10 @@ impl<'py> Batch<'py> {
         let arrays: Vec<_> = given().map(|(name, value)| Ok((name, numbers(name, value)?))).collect::<PyResult<_>>()?;
         let single_precision = all_single(&arrays);
         let axes = |n: usize| arrays.iter().any(|(_, a)| a.ndim() == n);
+        if let Some((name, array)) = arrays.iter().find(|(_, a)| axes(2) && !matches!(a.ndim(), 1 | 2)) {
+            let problem = format!("an array of shape {} is given beside batches", text_of(array.shape()));
+            return Err(errors::shape(name, problem, "give one row for all, (n,), or one for each state, (batch, n)"));
+        }
         if arrays.iter().any(|(_, a)| !matches!(a.ndim(), 1 | 2)) || !(axes(2) || single_precision) {
             return Ok(None);
         }
@@ -68,6 +72,10 @@ pub(crate) fn rows<'py, const N: usize>(
         }
     }
     let Some(rows) = common_rows(&arrays, 2)? else { return Ok(None) };
+    if let Some((name, array)) = arrays.iter().find(|(_, a)| rows == 0 && a.ndim() == 2) {
+        let problem = format!("an array of shape {} is given, a batch of nothing", text_of(array.shape()));
+        return Err(errors::shape(name, problem, "give one row or more"));
+    }
     arrays.iter().try_for_each(|(name, array)| columns::<f64>(layout, name, array, Finite::Now).map(drop))?;
     let of = |name: &str, k: usize| {
         let Some((_, array)) = arrays.iter().find(|(known, _)| *known == name) else { return Ok(None) };
@@ -141,6 +149,9 @@ pub(crate) fn columns<'py, F: Float>(
     let given = shape.last().copied().unwrap_or(0);
     let (positions, rootless) = (name.starts_with('q') && !name.starts_with("qd"), !name.starts_with('q'));
     let n = if positions { layout.nq } else { layout.nv };
+    if rootless {
+        layout.refuse_two_readings(name, given)?;
+    }
     let root = if layout.floating && rootless { ROOT } else { 0 };
     let left_out = [(0, 0), (root, 0), (0, layout.modes), (root, layout.modes)];
     let Some((lead, trail)) = left_out.into_iter().find(|(lead, trail)| lead + given + trail == n) else {
@@ -167,9 +178,11 @@ pub(crate) fn columns<'py, F: Float>(
     if !quaternions {
         return Ok(Numbers::Own(all));
     }
-    for row in all.chunks_mut(n) {
+    for (k, row) in all.chunks_mut(n).enumerate() {
         let mut quaternion: [f64; 4] = core::array::from_fn(|i| row[3 + i].into());
-        unit_quaternion(&mut quaternion).map_err(|e| errors::argument(name, e.problem, e.remedy))?;
+        let of_row = if shape.len() > 1 { format!("row {k}: ") } else { String::new() };
+        unit_quaternion(&mut quaternion)
+            .map_err(|e| errors::argument(name, format!("{of_row}{}", e.problem), e.remedy))?;
         row[3..7].iter_mut().zip(quaternion).for_each(|(to, from)| *to = F::from_f64(from));
     }
     Ok(Numbers::Own(all))

@@ -12,11 +12,10 @@ use crate::errors;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
 use given::Batch;
-use gyroflex_sim::Dynamics;
 use gyroflex_sim::batch::{self, Algorithm, Given};
+use gyroflex_sim::{Dynamics, Error, ErrorKind};
 use out::{all_finite, fill};
 use pyo3::prelude::*;
-use rayon::prelude::*;
 
 /// The results of an algorithm that Python sees, the first ones of what it computes.
 fn shapes(algorithm: &Algorithm, nv: usize) -> Vec<Shape> {
@@ -95,11 +94,12 @@ impl PyRobot {
                 let Err(e) = py.detach(|| batch::evaluate(model, algorithm, rows, states, slices)) else {
                     return Ok(());
                 };
-                // What is wrong in words of Python, if it is a number.
-                let given = batch.arrays.iter();
-                given
-                    .map(|(name, array)| columns::<F>(&self.layout, name, array, Finite::Now))
-                    .try_for_each(|c| c.map(drop))?;
+                if e.kind == ErrorKind::Shape {
+                    // An entry that is not finite: said with Python's index.
+                    for (name, array) in &batch.arrays {
+                        columns::<F>(&self.layout, name, array, Finite::Now)?;
+                    }
+                }
                 if batch.rows.is_none() {
                     all_finite(&shapes, slices, None)?;
                 }
@@ -154,13 +154,13 @@ impl PyRobot {
         py: Python<'py>,
         w: &mut Workspace,
         arguments: &[Argument<'_, 'py>],
-        batch: Option<Batch<'py>>,
+        given: Option<Batch<'py>>,
         shapes: &[Shape],
         results: &mut [&mut [f64]],
         read: impl FnOnce(&mut Workspace) -> PyResult<()>,
         one: impl OneState,
     ) -> PyResult<()> {
-        let Some(batch) = batch else {
+        let Some(given) = given else {
             read(w)?;
             let Workspace { dynamics, q, qd, theta, thetad, qdd, thetadd, tau, tau_ext, .. } = w;
             one(dynamics, Given { q, qd, theta, thetad, qdd, thetadd, tau, tau_ext }, results)
@@ -168,12 +168,12 @@ impl PyRobot {
             return all_finite(shapes, results, None);
         };
         all_given(arguments, w.elastic)?;
-        let given: Vec<(&str, Numbers<'py, f64>)> = batch
+        let numbers: Vec<(&str, Numbers<'py, f64>)> = given
             .arrays
             .iter()
             .map(|(name, array)| Ok((*name, columns(&self.layout, name, array, Finite::Now)?)))
             .collect::<PyResult<_>>()?;
-        let arrays: Vec<(&str, &[f64])> = given.iter().map(|(name, numbers)| (*name, numbers.slice())).collect();
+        let arrays: Vec<(&str, &[f64])> = numbers.iter().map(|(name, numbers)| (*name, numbers.slice())).collect();
         let zeros = vec![0.0; self.layout.nv];
         let row = |k: usize| {
             let of = |name: &str, width: usize| match arrays.iter().find(|(n, _)| *n == name) {
@@ -193,7 +193,7 @@ impl PyRobot {
                 tau_ext: vector("tau_ext"),
             }
         };
-        let count = batch.rows.unwrap_or(1);
+        let count = given.rows.unwrap_or(1);
         let mut tasks: Vec<Vec<&mut [f64]>> = (0..count).map(|_| Vec::new()).collect();
         for result in results.iter_mut() {
             let width = result.len() / count.max(1);
@@ -205,19 +205,18 @@ impl PyRobot {
             }
         }
         let dynamics = &w.dynamics;
-        let run = |dynamics: &mut Dynamics, (k, mut out): (usize, Vec<&mut [f64]>)| one(dynamics, row(k), &mut out);
-        py.detach(|| tasks.into_par_iter().enumerate().try_for_each_init(|| dynamics.clone(), run))
-            .map_err(errors::raise)?;
-        all_finite(shapes, results, batch.rows)
+        let run = |dynamics: &mut Dynamics, (k, mut out): (usize, Vec<&mut [f64]>)| {
+            let of_row = |e: Error| Error { problem: format!("row {k}: {}", e.problem), ..e };
+            one(dynamics, row(k), &mut out).map_err(of_row)
+        };
+        py.detach(|| batch::in_parallel(tasks, || dynamics.clone(), run)).map_err(errors::raise)?;
+        all_finite(shapes, results, given.rows)
     }
 }
 
 /// What is computed of one state.
-pub(crate) trait OneState:
-    Fn(&mut Dynamics, Given<f64>, &mut [&mut [f64]]) -> Result<(), gyroflex_sim::Error> + Sync
-{
-}
-impl<F: Fn(&mut Dynamics, Given<f64>, &mut [&mut [f64]]) -> Result<(), gyroflex_sim::Error> + Sync> OneState for F {}
+pub(crate) trait OneState: Fn(&mut Dynamics, Given<f64>, &mut [&mut [f64]]) -> Result<(), Error> + Sync {}
+impl<F: Fn(&mut Dynamics, Given<f64>, &mut [&mut [f64]]) -> Result<(), Error> + Sync> OneState for F {}
 
 /// The shapes that results have of all rows.
 fn batched(batch: &Option<Batch<'_>>, shapes: &[Shape]) -> Vec<Shape> {

@@ -3,7 +3,7 @@
 use super::Float;
 use crate::arrays::text_of;
 use crate::errors;
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{BorrowError, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyEllipsis, PySequence, PyTuple};
 
@@ -39,8 +39,13 @@ pub(crate) fn write<F: Float>(
     if arrays.iter().any(|array| !array.is_c_contiguous()) {
         return Err(refuse("an array is not in C order, one row after the other".to_owned()));
     }
-    let mut lent =
-        arrays.iter().map(|a| a.try_readwrite().map_err(|e| refuse(e.to_string()))).collect::<PyResult<Vec<_>>>()?;
+    let shared = |e: BorrowError| match e {
+        BorrowError::AlreadyBorrowed => {
+            refuse("it shares memory with an argument, or an array of it with another".into())
+        }
+        _ => refuse(e.to_string()),
+    };
+    let mut lent = arrays.iter().map(|a| a.try_readwrite().map_err(shared)).collect::<PyResult<Vec<_>>>()?;
     let mut slices =
         lent.iter_mut().map(|a| a.as_slice_mut().map_err(|e| refuse(e.to_string()))).collect::<PyResult<Vec<_>>>()?;
     call(&mut slices)

@@ -11,13 +11,13 @@ use crate::named;
 use crate::robot::PyRobot;
 use crate::{arguments, errors};
 use gyroflex_sim::Error;
+use gyroflex_sim::batch::in_parallel;
 use gyroflex_sim::error::ErrorKind;
 use gyroflex_sim::linearize::{KeptFriction, Linearizer, OperatingPoint, Output, Sweep, frequency_response};
 use gyroflex_sim::simulate::StateVec;
 use pyo3::exceptions::{PyIndexError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
-use rayon::prelude::*;
 
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
@@ -32,11 +32,11 @@ impl PyRobot {
     /// Parameters
     /// ----------
     /// q
-    ///     Joint positions, shape `(nq,)` [rad or m]; zero if left out. Without `qd` the robot is at rest: where its motors
-    ///     hold it at `q`, or, if `tau` is given, at the pose at which `tau` holds it, looked for from `q` on.
+    ///     Joint positions, shape `([batch,] nq)` [rad or m]; zero if left out. Without `qd` the robot is at rest: where its motors
+    ///     hold it at `q`, or, if `tau` is given, at the pose at which `tau` holds it, looked for from `q` on. If this or any array
+    ///     below is a batch, there is a linear model for each row, computed on all cores.
     /// qd, theta, thetad, tau
-    ///     With `qd`, any state and motor torques, as in `forward_dynamics`. If any of the arrays is a batch, `(batch, n)`, there is a
-    ///     linear model for each row, computed on all cores.
+    ///     With `qd`, any state and motor torques, shape `([batch,] nv)`, as in `forward_dynamics`.
     /// outputs
     ///     What `y` is made of: `motor_position`, `motor_velocity`, `link_position`, `link_velocity`, `joint_torque` (all
     ///     joints each), `pose:LINK` (position and rotation vector of a link's frame, world axes).
@@ -98,6 +98,11 @@ impl PyRobot {
         model: Option<&str>,
         friction: &str,
     ) -> PyResult<Vec<PyMode>> {
+        if rows(&self.layout, [("q", q)])?.is_some() {
+            let problem = "several poses are given, and each has modes of its own";
+            let remedy = "take `[one.modes() for one in robot.linearize(q)]`, or `robot.linearize(q).eigenvalues`";
+            return Err(errors::argument("q", problem, remedy));
+        }
         self.linearize(py, q, None, None, None, None, None, model, friction)?.modes(py)
     }
 
@@ -109,7 +114,7 @@ impl PyRobot {
     /// joint
     ///     Name of the joint.
     /// q
-    ///     Joint positions, shape `(nq,)` [rad or m], or `(batch, nq)` for a response at each; zero if left out.
+    ///     Joint positions, shape `([batch,] nq)` [rad or m]; zero if left out.
     /// start, stop
     ///     The first and the last frequency [Hz]; by default well below the slowest and well above the fastest mode.
     /// points
@@ -133,6 +138,15 @@ impl PyRobot {
     ) -> PyResult<PyFrequencyResponse> {
         let linearizer = self.linearizer(model, friction)?;
         linearizer.layout().find(joint).map_err(about("joint"))?;
+        for (name, frequency) in [("start", start), ("stop", stop)] {
+            match frequency {
+                Some(f) if !f.is_finite() => return Err(errors::not_finite(name, "0".to_owned(), f)),
+                Some(f) if f <= 0.0 => {
+                    return Err(errors::argument(name, format!("it is {f}"), "give a frequency above zero [Hz]"));
+                }
+                _ => {}
+            }
+        }
         let rows = rows(&self.layout, [("q", q)])?;
         let batch = rows.is_some();
         let poses = match rows {
@@ -183,9 +197,24 @@ fn each<T: Send, R: Send>(
         return rows.into_iter().map(|row| run(&mut linearizer, row)).collect();
     }
     let run = |linearizer: &mut Linearizer, (k, row): (usize, T)| {
-        run(linearizer, row).map_err(|e| Error { problem: format!("row {k}: {}", e.problem), ..e })
+        // What has the wrong shape has it in all rows.
+        let of_row = |e: Error| match e.kind {
+            ErrorKind::Shape => e,
+            _ => Error { problem: format!("row {k}: {}", e.problem), ..e },
+        };
+        run(linearizer, row).map_err(of_row)
     };
-    rows.into_par_iter().enumerate().map_init(|| linearizer.clone(), run).collect()
+    let mut results: Vec<Option<R>> = rows.iter().map(|_| None).collect();
+    let tasks = rows.into_iter().zip(results.iter_mut()).collect();
+    in_parallel(
+        tasks,
+        || linearizer.clone(),
+        |linearizer, (k, (row, result))| {
+            *result = Some(run(linearizer, (k, row))?);
+            Ok(())
+        },
+    )?;
+    Ok(results.into_iter().flatten().collect())
 }
 
 impl PyRobot {

@@ -174,13 +174,17 @@ impl PyLinearization {
 
     /// The modes of a model in continuous time, from the slowest to the fastest; a pair of complex eigenvalues is one mode.
     pub(super) fn modes(&self, py: Python<'_>) -> PyResult<Vec<PyMode>> {
-        let [(linear, _)] = &self.models[..] else {
-            let problem = format!("these are {} models, and each has modes of its own", self.models.len());
-            let remedy = "take `[one.modes() for one in robot.linearize(q)]`, or `robot.linearize(q).eigenvalues`";
+        let (false, [(linear, _)]) = (self.batch, &self.models[..]) else {
+            let problem = format!("this is a batch of {}, and each has modes of its own", self.models.len());
+            let remedy = "take `[one.modes() for one in linear]`, or `linear.eigenvalues`";
             return Err(errors::argument("self", problem, remedy));
         };
         let modes = py.detach(|| natural_modes(linear)).map_err(errors::raise)?;
         Ok(modes.into_iter().map(PyMode).collect())
+    }
+
+    fn __bool__(&self) -> bool {
+        true
     }
 
     fn __len__(&self) -> PyResult<usize> {

@@ -41,8 +41,8 @@ impl PyFrequencyResponse {
         name: &str,
         of: impl Fn(&Response) -> &Vec<Extreme>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let [one] = &self.responses[..] else {
-            let problem = format!("these are {} responses, not all with as many {name}", self.responses.len());
+        let (false, [one]) = (self.batch, &self.responses[..]) else {
+            let problem = format!("this is a batch of {}, and each has {name} of its own", self.responses.len());
             return Err(errors::argument("self", problem, format!("take `[one.{name} for one in response]`")));
         };
         let found: Vec<f64> = of(one).iter().map(|e| e.frequency).collect();
@@ -89,6 +89,10 @@ impl PyFrequencyResponse {
         self.frequencies(py, "antiresonances", |r| &r.antiresonances)
     }
 
+    fn __bool__(&self) -> bool {
+        true
+    }
+
     fn __len__(&self) -> PyResult<usize> {
         length(self.batch, self.responses.len(), "response")
     }
@@ -104,7 +108,7 @@ impl PyFrequencyResponse {
     }
 
     fn __repr__(&self) -> String {
-        let [one] = &self.responses[..] else {
+        let (false, [one]) = (self.batch, &self.responses[..]) else {
             return format!("<FrequencyResponse: {}, batch of {}>", self.joint(), self.responses.len());
         };
         let frequency = &one.frequency;

@@ -61,6 +61,7 @@ pub fn evaluate<F: Real>(
 ) -> Result<(), Error> {
     rows::check(model, rows, &given)?;
     let (columns, sizes) = (algorithm.columns(model.nv()), [model.nq(), model.nv()]);
+    SizeError::check("out", out.len(), out.len().min(columns.len()))?;
     let bends = model.flexible().is_some();
     let task = GROUPS * if bends { 1 } else { F::LANES };
     let mut tasks: Vec<Vec<&mut [F]>> = (0..rows.div_ceil(task)).map(|_| Vec::new()).collect();
@@ -131,9 +132,12 @@ fn lanes_are_finite<F: Real>(lanes: &[F::Lanes]) -> bool {
     lanes.iter().fold(true, |all, x| all & all_finite(F::each(x)))
 }
 
-/// Runs tasks on all cores, or on those of the pool of rayon's that this is called in; a single one in the calling thread, which is
-/// faster than waking another.
-fn in_parallel<T: Send, W>(
+/// Runs tasks on all cores, or on those of the pool of rayon's that this is called in, whose threads then need a stack of 32 MiB in
+/// unoptimised builds; a single one in the calling thread, which is faster than waking another.
+///
+/// # Errors
+/// The first that a task has.
+pub fn in_parallel<T: Send, W>(
     tasks: Vec<T>,
     work: impl Fn() -> W + Sync + Send,
     run: impl Fn(&mut W, (usize, T)) -> Result<(), Error> + Sync + Send,
@@ -145,7 +149,7 @@ fn in_parallel<T: Send, W>(
     if rayon::current_thread_index().is_some() { all() } else { POOL.install(all) }
 }
 
-/// Unoptimised builds keep all intermediate lanes on the stack, which is more than a thread has by default.
+/// Unoptimised builds keep all intermediate lanes on the stack, more than a thread has by default.
 const STACK: usize = 32 << 20;
 
 /// One thread for each core, or `RAYON_NUM_THREADS`.

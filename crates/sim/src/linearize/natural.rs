@@ -90,7 +90,7 @@ impl Linearization {
     /// If they are not found.
     pub fn eigenvalues(&self) -> Result<Vec<Complex<f64>>, Error> {
         let mut found = eigenvalues(&self.a)?;
-        // Both of a pair have the same size but for rounding.
+        // Both of a pair stay neighbours, for they are of exactly the same size.
         found.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
         for pair in 1..found.len() {
             if found[pair] == found[pair - 1].conj() && found[pair].im < 0.0 {

@@ -27,15 +27,16 @@ def frequency_response(responses: FrequencyResponse | Iterable[FrequencyResponse
     labels
         What each is called, the joint's name unless given.
     """
-    if isinstance(responses, FrequencyResponse):
-        several = [responses] if responses.motor.ndim == 1 else list(responses)
-    else:
-        several = list(responses) if isinstance(responses, Iterable) else [responses]
-    for response in several:
-        _checks.of_kind("responses", response, FrequencyResponse)
+    several: list[FrequencyResponse] = []
+    known: list[str] = []
+    for given in [responses] if isinstance(responses, FrequencyResponse) or not isinstance(responses, Iterable) else responses:
+        _checks.of_kind("responses", given, FrequencyResponse)
+        single = given.motor.ndim == 1
+        several += [given] if single else list(given)
+        known += [given.joint] if single else [f"{given.joint}[{k}]" for k in range(len(given))]
     if not several:
         raise _checks.refused("responses", "there is none", "give what `Robot.frequency_response` returned")
-    names = tuple(response.joint for response in several) if labels is None else _checks.names("labels", labels)
+    names = tuple(known) if labels is None else _checks.names("labels", labels)
     if len(names) != len(several):
         raise _checks.refused("labels", f"{len(names)} labels for {len(several)} responses", "give one for each")
     axes = stacked(2, height=3.0)
