@@ -86,6 +86,18 @@ impl Layout {
         self.motors("thetad", thetad, w.elastic, &mut w.thetad)
     }
 
+    /// A state under motor torques and generalised forces from outside.
+    pub(crate) fn torqued(
+        &self,
+        w: &mut Workspace,
+        [q, qd]: [&Bound<'_, PyAny>; 2],
+        [theta, thetad, tau, tau_ext]: [Option<&Bound<'_, PyAny>>; 4],
+    ) -> PyResult<()> {
+        self.state(w, q, qd, theta, thetad)?;
+        self.forces("tau", tau.ok_or_else(|| errors::missing_torques("tau"))?, &mut w.tau)?;
+        self.load_or_none(tau_ext, &mut w.tau_ext)
+    }
+
     /// Positions and velocities of joints and motors.
     pub(crate) fn state(
         &self,

@@ -1,7 +1,7 @@
 //! How accelerations and torques change with the motion and with the robot's parameters.
 
 use crate::arrays::{Vector, vector};
-use crate::batch::{Argument, Need};
+use crate::batch::{motion_arguments, torque_arguments};
 use crate::errors;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
@@ -39,15 +39,7 @@ impl PyRobot {
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let nv = self.layout.nv;
-        let read = |w: &mut Workspace| {
-            let layout = self.layout.or_batch();
-            layout.state(w, q, qd, theta, thetad)?;
-            let Some(tau) = tau else {
-                return Err(errors::missing_torques("tau"));
-            };
-            layout.forces("tau", tau, &mut w.tau)?;
-            layout.load_or_none(tau_ext, &mut w.tau_ext)
-        };
+        let read = |w: &mut Workspace| self.layout.or_batch().torqued(w, [q, qd], [theta, thetad, tau, tau_ext]);
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             let [mut qdd, mut thetadd, mut tau_j] = [(); 3].map(|()| vec![0.0; nv]);
             let [mut by_qdd, mut by_thetadd] = [(); 2].map(|()| vec![0.0; 5 * nv * nv]);
@@ -57,14 +49,7 @@ impl PyRobot {
             out.iter_mut().zip([by_qdd, by_thetadd]).for_each(|(out, rows)| blocks(&rows, 5, nv, out));
             Ok(())
         };
-        let arguments = [
-            ("q", Some(q), Need::Always),
-            ("qd", Some(qd), Need::Always),
-            ("theta", theta, Need::Elastic),
-            ("thetad", thetad, Need::Elastic),
-            ("tau", tau, Need::Always),
-            ("tau_ext", tau_ext, Need::Never),
-        ];
+        let arguments = torque_arguments([q, qd], [theta, thetad, tau, tau_ext]);
         let shapes = ["dqdd", "dthetadd"].map(|name| (name, vec![5, nv, nv]));
         self.by_rows(py, model, &arguments, &shapes, out, read, one)
     }
@@ -171,23 +156,6 @@ impl PyRobot {
         layout.velocities("qdd", qdd, &mut w.qdd)?;
         layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)
     }
-}
-
-/// The arrays of a motion.
-pub(crate) fn motion_arguments<'a, 'py>(
-    [q, qd, qdd]: [&'a Bound<'py, PyAny>; 3],
-    [theta, thetad, thetadd]: [Option<&'a Bound<'py, PyAny>>; 3],
-    tau_ext: Option<&'a Bound<'py, PyAny>>,
-) -> [Argument<'a, 'py>; 7] {
-    [
-        ("q", Some(q), Need::Always),
-        ("qd", Some(qd), Need::Always),
-        ("qdd", Some(qdd), Need::Always),
-        ("theta", theta, Need::Elastic),
-        ("thetad", thetad, Need::Elastic),
-        ("thetadd", thetadd, Need::Elastic),
-        ("tau_ext", tau_ext, Need::Never),
-    ]
 }
 
 /// Positions and velocities that are given.

@@ -213,16 +213,3 @@ impl PyRobot {
         self.evaluate(py, &Algorithm::GravityTorques, None, &arguments, out, single)
     }
 }
-
-impl PyRobot {
-    /// A state of which the motors' positions do not count.
-    pub(crate) fn motion(
-        &self,
-        w: &mut Workspace,
-        q: &Bound<'_, PyAny>,
-        qd: &Bound<'_, PyAny>,
-        thetad: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<()> {
-        self.layout.motion(w, q, qd, thetad)
-    }
-}

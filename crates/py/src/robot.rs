@@ -2,7 +2,7 @@
 
 use crate::arguments::{self, Layout};
 use crate::arrays::{Vector, matrix, vector};
-use crate::batch::Need;
+use crate::batch::{Need, motion_arguments, torque_arguments};
 use crate::drive::Origin;
 use crate::errors;
 use crate::inverse::Inverses;
@@ -202,14 +202,7 @@ impl PyRobot {
                 Ok((vector(py, "qdd", qdd)?, vector(py, "thetadd", thetadd)?).into_pyobject(py)?.into_any())
             })
         };
-        let arguments = [
-            ("q", Some(q), Need::Always),
-            ("qd", Some(qd), Need::Always),
-            ("theta", theta, Need::Elastic),
-            ("thetad", thetad, Need::Elastic),
-            ("tau", tau, Need::Always),
-            ("tau_ext", tau_ext, Need::Never),
-        ];
+        let arguments = torque_arguments([q, qd], [theta, thetad, tau, tau_ext]);
         self.evaluate(py, &Algorithm::ForwardDynamics, model, &arguments, out, single)
     }
 
@@ -261,15 +254,7 @@ impl PyRobot {
                 Ok((vector(py, "tau_j", tau_j)?, vector(py, "tau", tau)?).into_pyobject(py)?.into_any())
             })
         };
-        let arguments = [
-            ("q", Some(q), Need::Always),
-            ("qd", Some(qd), Need::Always),
-            ("qdd", Some(qdd), Need::Always),
-            ("theta", theta, Need::Elastic),
-            ("thetad", thetad, Need::Elastic),
-            ("thetadd", thetadd, Need::Elastic),
-            ("tau_ext", tau_ext, Need::Never),
-        ];
+        let arguments = motion_arguments([q, qd, qdd], [theta, thetad, thetadd], tau_ext);
         self.evaluate(py, &Algorithm::InverseDynamics, model, &arguments, out, single)
     }
 

@@ -23,6 +23,38 @@ pub(crate) enum Need {
 /// An argument that is an array over the joints: its name, its value, and when there must be one.
 pub(crate) type Argument<'a, 'py> = (&'static str, Option<&'a Bound<'py, PyAny>>, Need);
 
+/// The arrays of a state under torques.
+pub(crate) fn torque_arguments<'a, 'py>(
+    [q, qd]: [&'a Bound<'py, PyAny>; 2],
+    [theta, thetad, tau, tau_ext]: [Option<&'a Bound<'py, PyAny>>; 4],
+) -> [Argument<'a, 'py>; 6] {
+    [
+        ("q", Some(q), Need::Always),
+        ("qd", Some(qd), Need::Always),
+        ("theta", theta, Need::Elastic),
+        ("thetad", thetad, Need::Elastic),
+        ("tau", tau, Need::Always),
+        ("tau_ext", tau_ext, Need::Never),
+    ]
+}
+
+/// The arrays of a motion.
+pub(crate) fn motion_arguments<'a, 'py>(
+    [q, qd, qdd]: [&'a Bound<'py, PyAny>; 3],
+    [theta, thetad, thetadd]: [Option<&'a Bound<'py, PyAny>>; 3],
+    tau_ext: Option<&'a Bound<'py, PyAny>>,
+) -> [Argument<'a, 'py>; 7] {
+    [
+        ("q", Some(q), Need::Always),
+        ("qd", Some(qd), Need::Always),
+        ("qdd", Some(qdd), Need::Always),
+        ("theta", theta, Need::Elastic),
+        ("thetad", thetad, Need::Elastic),
+        ("thetadd", thetadd, Need::Elastic),
+        ("tau_ext", tau_ext, Need::Never),
+    ]
+}
+
 /// A number of NumPy's that lanes compute with.
 pub(crate) trait Float: Real + Element {}
 impl<F: Real + Element> Float for F {}

@@ -4,7 +4,10 @@ mod given;
 mod out;
 mod table;
 
-pub(crate) use given::{Argument, Finite, Float, Need, Numbers, Row, all_given, all_single, columns, rows};
+pub(crate) use given::{
+    Argument, Finite, Float, Need, Numbers, Row, all_given, all_single, columns, motion_arguments, rows,
+    torque_arguments,
+};
 pub(crate) use out::{Shape, results, together, write};
 pub(crate) use table::{Table, array};
 

@@ -7,8 +7,8 @@ mod spec;
 pub(crate) use result::{PyConstrainedMotion, PyConstrainedTorques, PyImpact};
 pub(crate) use spec::PyConstraint;
 
-use crate::batch::Need;
-use crate::derivatives::{acceleration, load, motion_arguments, state};
+use crate::batch::{Need, motion_arguments, torque_arguments};
+use crate::derivatives::{acceleration, load, state};
 use crate::errors;
 use crate::named;
 use crate::robot::PyRobot;
@@ -83,14 +83,7 @@ impl PyRobot {
     ) -> PyResult<PyConstrainedMotion> {
         let (held, regularisation) =
             (self.held(&constraints)?, regularisation(threshold, damping.unwrap_or_default())?);
-        let read = |w: &mut Workspace| {
-            self.layout.or_batch().state(w, q, qd, theta, thetad)?;
-            let Some(tau) = tau else {
-                return Err(errors::missing_torques("tau"));
-            };
-            self.layout.forces("tau", tau, &mut w.tau)?;
-            self.layout.load_or_none(tau_ext, &mut w.tau_ext)
-        };
+        let read = |w: &mut Workspace| self.layout.or_batch().torqued(w, [q, qd], [theta, thetad, tau, tau_ext]);
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             let [qdd, thetadd, tau_j, forces @ ..] = out else { return Ok(()) };
             let mut wrenches = vec![Force::zero(); held.len()];
@@ -106,14 +99,7 @@ impl PyRobot {
             result::write(&solved, &wrenches, forces);
             Ok(())
         };
-        let arguments = [
-            ("q", Some(q), Need::Always),
-            ("qd", Some(qd), Need::Always),
-            ("theta", theta, Need::Elastic),
-            ("thetad", thetad, Need::Elastic),
-            ("tau", tau, Need::Always),
-            ("tau_ext", tau_ext, Need::Never),
-        ];
+        let arguments = torque_arguments([q, qd], [theta, thetad, tau, tau_ext]);
         let shapes = result::shapes(&["qdd", "thetadd", "tau_j"], self.layout.nv, &held);
         Ok(PyConstrainedMotion(self.table(py, model, &arguments, &shapes, read, one)?))
     }
@@ -244,7 +230,7 @@ impl PyRobot {
     ) -> PyResult<PyImpact> {
         let (held, regularisation) =
             (self.held(&constraints)?, regularisation(threshold, damping.unwrap_or_default())?);
-        let read = |w: &mut Workspace| self.motion(w, q, qd, thetad);
+        let read = |w: &mut Workspace| self.layout.or_batch().motion(w, q, qd, thetad);
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             let [qd, thetad, gears, forces @ ..] = out else { return Ok(()) };
             let mut wrenches = vec![Force::zero(); held.len()];
