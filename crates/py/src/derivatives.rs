@@ -5,9 +5,7 @@ use crate::batch::{motion_arguments, torque_arguments};
 use crate::errors;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
-use gyroflex::dynamics::{
-    Acceleration, External, Forward, ForwardDerivatives, InverseDerivatives, PARAMETERS, Regressor, State,
-};
+use gyroflex::dynamics::{Forward, ForwardDerivatives, InverseDerivatives, PARAMETERS, Regressor};
 use gyroflex_sim::Dynamics;
 use gyroflex_sim::batch::Given;
 use gyroflex_sim::bending::RIGID;
@@ -45,7 +43,7 @@ impl PyRobot {
             let [mut by_qdd, mut by_thetadd] = [(); 2].map(|()| vec![0.0; 5 * nv * nv]);
             let value = Forward { qdd: &mut qdd, thetadd: &mut thetadd, tau_j: &mut tau_j };
             let derivatives = ForwardDerivatives { qdd: &mut by_qdd, thetadd: &mut by_thetadd };
-            dynamics.forward_derivatives(state(&s), s.tau, load(&s), value, derivatives)?;
+            dynamics.forward_derivatives(s.state(), s.tau, s.load(), value, derivatives)?;
             out.iter_mut().zip([by_qdd, by_thetadd]).for_each(|(out, rows)| blocks(&rows, 5, nv, out));
             Ok(())
         };
@@ -86,7 +84,7 @@ impl PyRobot {
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             let [mut tau_j, mut tau] = [(); 2].map(|()| vec![0.0; 6 * nv * nv]);
             let derivatives = InverseDerivatives { tau_j: &mut tau_j, tau: &mut tau };
-            dynamics.inverse_derivatives(state(&s), acceleration(&s), load(&s), derivatives)?;
+            dynamics.inverse_derivatives(s.state(), s.acceleration(), s.load(), derivatives)?;
             out.iter_mut().zip([tau_j, tau]).for_each(|(out, rows)| blocks(&rows, 6, nv, out));
             Ok(())
         };
@@ -124,7 +122,7 @@ impl PyRobot {
         let one = |dynamics: &mut Dynamics, s: Given<f64>, out: &mut [&mut [f64]]| {
             // As many as there are shapes.
             let [link, transmission, motor] = out else { return Ok(()) };
-            dynamics.regressor(state(&s), acceleration(&s), Regressor { link, transmission, motor })
+            dynamics.regressor(s.state(), s.acceleration(), Regressor { link, transmission, motor })
         };
         let arguments = motion_arguments([q, qd, qdd], [theta, thetad, thetadd], None);
         let shapes = ["link", "transmission", "motor"].map(|name| (name, vec![self.layout.nv, width]));
@@ -156,21 +154,6 @@ impl PyRobot {
         layout.velocities("qdd", qdd, &mut w.qdd)?;
         layout.motors("thetadd", thetadd, w.elastic, &mut w.thetadd)
     }
-}
-
-/// Positions and velocities that are given.
-pub(crate) fn state<'a>(s: &Given<'a, f64>) -> State<'a, f64> {
-    State { q: s.q, qd: s.qd, theta: s.theta, thetad: s.thetad }
-}
-
-/// Accelerations that are given.
-pub(crate) fn acceleration<'a>(s: &Given<'a, f64>) -> Acceleration<'a, f64> {
-    Acceleration { qdd: s.qdd, thetadd: s.thetadd }
-}
-
-/// The load from outside that is given.
-pub(crate) fn load<'a>(s: &Given<'a, f64>) -> External<'a, f64> {
-    External { tau: s.tau_ext, wrenches: &[] }
 }
 
 /// Square blocks side by side become blocks one behind the other.

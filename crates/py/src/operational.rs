@@ -5,7 +5,7 @@ use crate::batch::Need;
 use crate::robot::PyRobot;
 use crate::workspace::Workspace;
 use crate::{errors, named};
-use gyroflex::dynamics::{Frame, OperationalSpace, Rotation, State, Task};
+use gyroflex::dynamics::{Frame, OperationalSpace, Rotation, Task};
 use gyroflex::spatial::{Transform, Vec3};
 use gyroflex_sim::Dynamics;
 use gyroflex_sim::batch::Given;
@@ -93,8 +93,7 @@ impl PyRobot {
                 velocity_force: mu,
                 gravity_force: p,
             };
-            let state = State { q: s.q, qd: s.qd, theta: s.theta, thetad: s.thetad };
-            let values = dynamics.operational_space(state, task, out)?;
+            let values = dynamics.operational_space(s.state(), task, out)?;
             (smallest[0], largest[0], representation[0]) = (values.smallest, values.largest, values.representation);
             Ok(())
         };

@@ -8,7 +8,6 @@ pub(crate) use result::{PyConstrainedMotion, PyConstrainedTorques, PyImpact};
 pub(crate) use spec::PyConstraint;
 
 use crate::batch::{Need, motion_arguments, torque_arguments};
-use crate::derivatives::{acceleration, load, state};
 use crate::errors;
 use crate::named;
 use crate::robot::PyRobot;
@@ -88,9 +87,9 @@ impl PyRobot {
             let [qdd, thetadd, tau_j, forces @ ..] = out else { return Ok(()) };
             let mut wrenches = vec![Force::zero(); held.len()];
             let solved = dynamics.constrained_forward(
-                state(&s),
+                s.state(),
                 s.tau,
-                load(&s),
+                s.load(),
                 &held,
                 regularisation,
                 Forward { qdd, thetadd, tau_j },
@@ -171,9 +170,9 @@ impl PyRobot {
             let [tau_j, tau, unborne, forces @ ..] = out else { return Ok(()) };
             let mut wrenches = vec![Force::zero(); held.len()];
             let solved = dynamics.constrained_inverse(
-                state(&s),
-                acceleration(&s),
-                load(&s),
+                s.state(),
+                s.acceleration(),
+                s.load(),
                 &held,
                 sharing.view(),
                 regularisation,
@@ -235,7 +234,7 @@ impl PyRobot {
             let [qd, thetad, gears, forces @ ..] = out else { return Ok(()) };
             let mut wrenches = vec![Force::zero(); held.len()];
             let solved = dynamics.impact(
-                state(&s),
+                s.state(),
                 &held,
                 release,
                 regularisation,

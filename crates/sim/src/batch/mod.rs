@@ -16,6 +16,7 @@ pub use rollout::{Rollout, Scheme, Trajectories, rollout};
 use crate::error::{Error, ErrorKind};
 use crate::robot::OwnedModel;
 use bending::One;
+use gyroflex::dynamics::{Acceleration, External, State};
 use gyroflex::model::SizeError;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -45,6 +46,23 @@ pub struct Given<'a, F> {
     pub tau: &'a [F],
     /// Further generalised forces on the link side.
     pub tau_ext: &'a [F],
+}
+
+impl<'a, F> Given<'a, F> {
+    /// Positions and velocities, where this is about one state.
+    pub fn state(&self) -> State<'a, F> {
+        State { q: self.q, qd: self.qd, theta: self.theta, thetad: self.thetad }
+    }
+
+    /// Accelerations.
+    pub fn acceleration(&self) -> Acceleration<'a, F> {
+        Acceleration { qdd: self.qdd, thetadd: self.thetadd }
+    }
+
+    /// The load from outside.
+    pub fn load(&self) -> External<'a, F> {
+        External { tau: self.tau_ext, wrenches: &[] }
+    }
 }
 
 /// Runs an algorithm over so many rows, and writes the first of its results, as many as `out` has, each with the columns that
