@@ -10,7 +10,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// lanes into the wide registers of the processor. The states share the robot, whose numbers are of type `T`.
 ///
 /// Eight lanes of `f64` fill the registers of AVX-512 once and those of AVX2 twice, and a line of the cache, to which they are
-/// aligned: one that straddles two lines costs double. More than eight the compiler does not keep in registers, of `f32` neither.
+/// aligned: one that straddles two lines costs double. Of more than eight, of `f32` too, the compiler does not keep all in registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Lanes<T, const N: usize>(pub [T; N]);

@@ -6,7 +6,7 @@ use gyroflex::{Lanes, Scalar};
 pub trait Real: Scalar<Param = Self> + Into<f64> + Send + Sync + 'static {
     /// Several states side by side.
     type Lanes: Scalar<Param = Self> + Send;
-    /// How many.
+    /// How many states are side by side.
     const LANES: usize;
 
     /// The number of each state.

@@ -14,8 +14,8 @@ pub(super) const fn rounded(coefficients: usize) -> Option<usize> {
     }
 }
 
-/// Runs a kernel for as many coefficients as are needed, or for the next larger number. Numbers beyond `MAX` are not compiled, for the
-/// compiler sees through a condition that is a constant, and the largest, which hardly any robot needs, not for every instruction set.
+/// Runs a kernel for as many coefficients as are needed, or for the next larger number. Numbers beyond `MAX` are not compiled:
+/// their condition is a constant. The largest, which hardly any robot needs, is not compiled for every instruction set.
 macro_rules! with_size {
     ($needed:expr, $max:ident, $n:ident => $kernel:expr) => {
         $crate::dynamics::elastic_inverse::sizes::with_size!(@ $needed, $max, $n => $kernel, 1 2 3 4 5 6 7 9)
